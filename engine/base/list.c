@@ -48,8 +48,8 @@ static glint_status grow(glint_list *list, glint_error *error)
 
 size_t glint_list_find(const glint_list *list, const void *object)
 {
-    const uint32_t place = list->count ? list->slots[find_slot(list, object)] : 0;
-    return place ? place - 1 : list->count;
+    const uint32_t slot = list->count ? list->slots[find_slot(list, object)] : 0;
+    return slot ? slot - 1 : list->count;
 }
 
 glint_status glint_list_add(glint_list *list, void *object, glint_error *error)

@@ -57,12 +57,12 @@ glint_sequence_seed glint_sequence_seed_of(uint64_t seed)
 
 void glint_sequence_flipped(uint32_t k, const glint_sequence_seed *seed, double out[2])
 {
-    const uint32_t place = reverse32(flip_upwards(reverse32(k), seed->order));
+    const uint32_t position = reverse32(flip_upwards(reverse32(k), seed->order));
     uint32_t second = 0;
-    for (uint32_t i = place, v = 1u << 31; i; i >>= 1, v ^= v >> 1)
+    for (uint32_t i = position, v = 1u << 31; i; i >>= 1, v ^= v >> 1)
         if (i & 1)
             second ^= v;
-    out[0] = (reverse32(flip_upwards(place, seed->digits[0])) + 0.5) * 0x1p-32;
+    out[0] = (reverse32(flip_upwards(position, seed->digits[0])) + 0.5) * 0x1p-32;
     out[1] = (reverse32(flip_upwards(reverse32(second), seed->digits[1])) + 0.5) * 0x1p-32;
 }
 

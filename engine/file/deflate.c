@@ -76,10 +76,10 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS) // the address is only a hint; systems use it where nothing is mapped
 #endif
 #define BUCKET_BITS 13
-#define PLACE_SHIFT 16 // from a place number to its address
-#define FIRST_PLACE UINT32_C(0x20000000) // shifted; the 2^29 places from here on are unused by programs
-#define PLACE_BITS 29
-#define PLACES_TRIED 64 // each thread of each writer needs one place for each of its buckets
+#define ADDRESS_SHIFT 16 // from a place number to its address
+#define FIRST_ADDRESS UINT32_C(0x20000000) // shifted; the 2^29 places from here on are unused by programs
+#define ADDRESS_BITS 29
+#define ADDRESSES_TRIED 64 // each thread of each writer needs one place for each of its buckets
 #define STREAMS 256 // cached for each thread
 
 /// Returns the CRC-32C of four bytes from 0, as the crc32 instruction computes it: linear over the bits. The bucket is
@@ -93,37 +93,37 @@ static uint32_t bucket_of(uint32_t bytes)
 
 /// Places relative to the first: for each bit of a bucket one place whose bucket has that bit as its highest, and some
 /// places with bucket 0.
-typedef struct places {
-    uint32_t place[BUCKET_BITS], bucket[BUCKET_BITS];
-    uint32_t zero[PLACE_BITS];
+typedef struct basis {
+    uint32_t address[BUCKET_BITS], bucket[BUCKET_BITS];
+    uint32_t zero[ADDRESS_BITS];
     int zero_count;
-} places;
+} basis;
 
 /// Removes from a bucket the bits that a place can provide. Returns that place; *bucket keeps the other bits.
-static uint32_t place_for(const places *p, uint32_t *bucket)
+static uint32_t address_for(const basis *p, uint32_t *bucket)
 {
-    uint32_t place = 0;
+    uint32_t address = 0;
     for (int bit = BUCKET_BITS - 1; bit >= 0; bit--)
         if (*bucket >> bit & 1 && p->bucket[bit]) {
             *bucket ^= p->bucket[bit];
-            place ^= p->place[bit];
+            address ^= p->address[bit];
         }
-    return place;
+    return address;
 }
 
 /// Finds the places by Gaussian elimination over the bits of a place.
-static places find_places(void)
+static basis find_basis(void)
 {
-    places p = { .zero_count = 0 };
-    for (int i = 0; i < PLACE_BITS; i++) {
+    basis p = { .zero_count = 0 };
+    for (int i = 0; i < ADDRESS_BITS; i++) {
         uint32_t bucket = bucket_of(UINT32_C(1) << i);
-        const uint32_t place = UINT32_C(1) << i ^ place_for(&p, &bucket);
+        const uint32_t address = UINT32_C(1) << i ^ address_for(&p, &bucket);
         if (bucket) {
             const int highest = 31 - __builtin_clz(bucket);
             p.bucket[highest] = bucket;
-            p.place[highest] = place;
+            p.address[highest] = address;
         } else {
-            p.zero[p.zero_count++] = place;
+            p.zero[p.zero_count++] = address;
         }
     }
     return p;
@@ -132,17 +132,17 @@ static places find_places(void)
 /// Maps memory for a stream at an address with this bucket. NULL: the system has no such address free.
 static void *map_stream(uint32_t bucket)
 {
-    const places p = find_places();
-    bucket ^= bucket_of(FIRST_PLACE);
-    uint32_t place = FIRST_PLACE ^ place_for(&p, &bucket);
-    for (int i = 1; bucket == 0 && i <= PLACES_TRIED; i++) {
-        void *want = (void *)((uintptr_t)place << PLACE_SHIFT);
+    const basis p = find_basis();
+    bucket ^= bucket_of(FIRST_ADDRESS);
+    uint32_t address = FIRST_ADDRESS ^ address_for(&p, &bucket);
+    for (int i = 1; bucket == 0 && i <= ADDRESSES_TRIED; i++) {
+        void *want = (void *)((uintptr_t)address << ADDRESS_SHIFT);
         void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_THERE, -1, 0);
         if (got == want)
             return got;
         if (got != MAP_FAILED)
             munmap(got, STREAM_BYTES);
-        place ^= p.zero[__builtin_ctz((unsigned)i)]; // Gray code: every combination once
+        address ^= p.zero[__builtin_ctz((unsigned)i)]; // Gray code: every combination once
     }
     return NULL;
 }

@@ -24,7 +24,7 @@ typedef struct job {
     job_state state;
     glint_image *image; ///< owned until the job is encoded
     glint_write_desc desc; ///< its strings are stored after the job
-    char *place; ///< canonical path of the file, see glint_draft_place; owned
+    char *target; ///< canonical path of the file, see glint_draft_place; owned
     glint_bytes bytes; ///< the encoded file, until it is written; owned
     glint_write_result result;
 } job;
@@ -56,7 +56,7 @@ static double now_ms(void)
 static void free_job(job *j)
 {
     if (j)
-        free(j->place);
+        free(j->target);
     free(j);
 }
 
@@ -93,7 +93,7 @@ static void file(job *j)
 static bool is_behind(const glint_writer *writer, const job *j)
 {
     for (const job *before = writer->first; before != j; before = before->next)
-        if (before->state == JOB_FILING && strcmp(before->place, j->place) == 0)
+        if (before->state == JOB_FILING && strcmp(before->target, j->target) == 0)
             return true;
     return false;
 }
@@ -298,8 +298,8 @@ static job *make_job(const glint_write_desc *desc)
     job *j = malloc(bytes);
     if (!j)
         return NULL;
-    *j = (job) { .state = JOB_QUEUED, .desc = *desc, .place = glint_draft_place(desc->path) };
-    if (!j->place) {
+    *j = (job) { .state = JOB_QUEUED, .desc = *desc, .target = glint_draft_place(desc->path) };
+    if (!j->target) {
         free(j);
         return NULL;
     }

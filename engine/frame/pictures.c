@@ -58,17 +58,17 @@ static double cost_of(const glint_plan *plan, const glint_image *image)
 }
 
 /// Reserves memory for a picture, and drops pictures that are worth less. NULL: there is not enough memory.
-static glint_picture *make_place(glint_renderer *renderer, double worth, size_t bytes)
+static glint_picture *make_slot(glint_renderer *renderer, double worth, size_t bytes)
 {
     for (;;) {
-        glint_picture *place = NULL, *least = NULL;
+        glint_picture *slot = NULL, *least = NULL;
         for (int i = 1; i < GLINT_PICTURES_MAX; i++) {
             glint_picture *picture = &renderer->pictures[i];
-            place = picture->image ? place : picture;
+            slot = picture->image ? slot : picture;
             least = picture->image && (!least || picture->worth < least->worth) ? picture : least;
         }
-        if (place && glint_reuse_reserve(&renderer->reuse, bytes))
-            return place;
+        if (slot && glint_reuse_reserve(&renderer->reuse, bytes))
+            return slot;
         const bool fits = least && least->worth <= worth;
         renderer->picture_floor = fits ? least->worth : worth;
         if (!fits)
@@ -81,13 +81,13 @@ static glint_picture *make_place(glint_renderer *renderer, double worth, size_t 
 static void set_aside(glint_renderer *renderer, const glint_picture *last, int spare)
 {
     const size_t bytes = glint_image_bytes(last->image);
-    glint_picture *place = make_place(renderer, renderer->picture_floor + last->cost, bytes);
-    if (!place)
+    glint_picture *slot = make_slot(renderer, renderer->picture_floor + last->cost, bytes);
+    if (!slot)
         return;
-    *place = *last;
+    *slot = *last;
     // the floor may have risen to the worth of the last dropped picture
-    place->worth = renderer->picture_floor + last->cost;
-    glint_image_retain(place->image);
+    slot->worth = renderer->picture_floor + last->cost;
+    glint_image_retain(slot->image);
     glint_reuse_unreserve(&renderer->reuse, bytes); // the spare image's memory was reserved already
     glint_image_release(renderer->spare[spare]);
     renderer->spare[spare] = NULL;

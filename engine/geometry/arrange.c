@@ -24,10 +24,10 @@ typedef struct arrangement {
     uint32_t *chunks; ///< scratch: one number for each chunk of primitives or of members
 } arrangement;
 
-static inline uint32_t comes_from(const arrangement *a, uint32_t place)
+static inline uint32_t comes_from(const arrangement *a, uint32_t position)
 {
     const glint_index *index = a->geometry->index;
-    return place < index->box_count ? index->order[place] : a->rest[place - index->box_count];
+    return position < index->box_count ? index->order[position] : a->rest[position - index->box_count];
 }
 
 static void arrangement_free(arrangement *a)
@@ -193,14 +193,15 @@ glint_status glint_geometry_move(glint_geometry *geometry, glint_pool *pool, gli
     const uint32_t bounded = geometry->index->box_count;
     arrangement a;
     bool allocated = arrangement_init(&a, geometry);
-    if (geometry->shading_points && !geometry->places)
-        allocated = (geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places)) && allocated;
+    if (geometry->shading_points && !geometry->index_of_id)
+        allocated =
+            (geometry->index_of_id = glint_alloc(geometry->id_count, sizeof *geometry->index_of_id)) && allocated;
     if (allocated) {
         move_prims(&a, pool);
         if (geometry->corners)
             move_corners(geometry, &a, pool);
-        for (uint32_t i = 0; geometry->places && i < bounded; i++)
-            geometry->places[geometry->prims[i].id] = i;
+        for (uint32_t i = 0; geometry->index_of_id && i < bounded; i++)
+            geometry->index_of_id[geometry->prims[i].id] = i;
         for (uint32_t i = 0; i < geometry->table.unbounded_count; i++)
             geometry->unbounded[i] = bounded + i;
         geometry->table.prim_count = bounded + geometry->table.unbounded_count;

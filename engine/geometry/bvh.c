@@ -185,16 +185,16 @@ static uint32_t plan_slots(const builder *b, const node_plan *plan, node_slots *
 static void rank_slots(const node_slots *slots, int axis, uint32_t ranks[GLINT_NODE_WIDTH])
 {
     typedef int32_t int4 __attribute__((vector_size(16)));
-    glint_float4 places[GLINT_NODE_WIDTH / 4];
+    glint_float4 positions[GLINT_NODE_WIDTH / 4];
     for (uint32_t i = 0; i < GLINT_NODE_WIDTH; i++)
-        places[i / 4][i % 4] =
+        positions[i / 4][i % 4] =
             i < slots->count ? slots->boxes[i]->lower[axis] * 0.5f + slots->boxes[i]->upper[axis] * 0.5f : INFINITY;
     for (uint32_t i = 0; i < slots->count; i++) {
-        const float place = places[i / 4][i % 4];
+        const float position = positions[i / 4][i % 4];
         int4 before = { 0 };
         for (int32_t k = 0; k < GLINT_NODE_WIDTH / 4; k++) {
             const int4 index = (int4) { 0, 1, 2, 3 } + 4 * k;
-            before -= (places[k] < place) | ((places[k] == place) & (index < (int32_t)i));
+            before -= (positions[k] < position) | ((positions[k] == position) & (index < (int32_t)i));
         }
         ranks[i] = (uint32_t)(before[0] + before[1] + before[2] + before[3]);
     }

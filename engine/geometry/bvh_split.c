@@ -223,8 +223,8 @@ static void find_wrong(void *context, size_t index, int worker)
     for (uint32_t i = p->begin; i < p->begin + p->count; i++) {
         const glint_record *record = &work->records[i];
         const v4 center = box_center(record_box(record));
-        const float place = (record->lower[axis] * 0.25f + record->upper[axis] * 0.25f - origin) * scale;
-        const size_t is_upper = (int)place >= bin;
+        const float position = (record->lower[axis] * 0.25f + record->upper[axis] * 0.25f - origin) * scale;
+        const size_t is_upper = (int)position >= bin;
         wrong[count] = i;
         count += is_upper != upper_part;
         // all bits set make a NaN, which min4 and max4 ignore

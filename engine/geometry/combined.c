@@ -123,35 +123,35 @@ void glint_combined_roles(glint_combined *combined)
 
 /// Counts crossings along a fixed direction, which is unlikely to lie in a face or edge. Every direction gives the
 /// same result.
-static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
+static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double point[3])
 {
     static const double direction[3] = { 0.36, 0.48, 0.8 };
     const glint_hull *hull = &geometry->hulls[part->item];
     int exits = 0;
     for (uint32_t i = 0; i < hull->count; i++)
-        exits += glint_prim_crossing(&geometry->members[hull->first + i], place, direction);
+        exits += glint_prim_crossing(&geometry->members[hull->first + i], point, direction);
     return part->inverted ? exits < 0 : exits > 0;
 }
 
-static bool part_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
+static bool part_holds(const glint_geometry *geometry, const glint_prim *part, const double point[3])
 {
     double e[3];
-    vec_sub(e, place, part->center);
+    vec_sub(e, point, part->center);
     if (part->kind == GLINT_PRIM_HULL)
-        return part->face == 1 && hull_holds(geometry, part, place);
+        return part->face == 1 && hull_holds(geometry, part, point);
     if (part->kind == GLINT_PRIM_PLANE)
         return vec_dot(part->normal, e) < 0;
-    return glint_solid_holds(&geometry->solids[part->item], part->center, place);
+    return glint_solid_holds(&geometry->solids[part->item], part->center, point);
 }
 
-bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3])
+bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double point[3])
 {
     bool stack[GLINT_PARTS_MAX] = { false };
     int top = 0;
     for (uint32_t k = 0; k < combined->length; k++) {
         const uint8_t p = combined->program[k];
         if (p < GLINT_PARTS_MAX) {
-            stack[top++] = part_holds(geometry, &geometry->members[combined->first + p], place);
+            stack[top++] = part_holds(geometry, &geometry->members[combined->first + p], point);
         } else if (p == GLINT_COMBINE_NOTHING) {
             stack[top++] = false;
         } else {

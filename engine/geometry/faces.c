@@ -1,65 +1,65 @@
 #include "engine/geometry/faces.h"
 #include "engine/base/vec.h"
 
-void glint_place_point(const glint_placing *place, const double p[3], double out[3])
+void glint_place_point(const glint_placing *placing, const double p[3], double out[3])
 {
-    if (place->map)
-        glint_transform_point(place->map, p, out);
+    if (placing->map)
+        glint_transform_point(placing->map, p, out);
     else
         vec_copy(out, p);
     for (int c = 0; c < 3; c++)
         out[c] += 0.0; // -0 and 0 are the same position
 }
 
-void glint_place_normal(const glint_placing *place, const double n[3], double out[3])
+void glint_place_normal(const glint_placing *placing, const double n[3], double out[3])
 {
     double turned[3] = { n[0], n[1], n[2] };
-    for (int c = 0; c < 3 && place->map; c++)
-        turned[c] = vec_dot(place->cofactors[c], n) * (place->determinant < 0 ? -1 : 1);
-    if (place->map && vec_max_abs(turned) > 0)
+    for (int c = 0; c < 3 && placing->map; c++)
+        turned[c] = vec_dot(placing->cofactors[c], n) * (placing->determinant < 0 ? -1 : 1);
+    if (placing->map && vec_max_abs(turned) > 0)
         vec_normalize(turned, turned);
     vec_copy(out, turned);
 }
 
-void glint_face_init(glint_face *face, const glint_placing *place, const double normal[3], const double point[3])
+void glint_face_init(glint_face *face, const glint_placing *placing, const double normal[3], const double point[3])
 {
     double unit[3], from[3];
     vec_normalize(unit, normal);
-    glint_place_normal(place, unit, face->normal);
+    glint_place_normal(placing, unit, face->normal);
     face->axis = (uint32_t)glint_axis_along(face->normal);
     const int own = glint_axis_along(unit);
     for (int c = 0; c < 3; c++)
         from[c] = own == 3 || own == c || face->axis < 3 ? point[c] : 0;
-    glint_place_point(place, from, face->at);
-    face->places = 0;
+    glint_place_point(placing, from, face->at);
+    face->magnitude = 0;
 }
 
 /// Returns the magnitude of the terms that map a point from the shape's own space to the world.
-static double moved_by(const glint_placing *place, int axis, const double own[3])
+static double moved_by(const glint_placing *placing, int axis, const double own[3])
 {
-    const double *row = place->map ? place->map->m[axis] : NULL;
+    const double *row = placing->map ? placing->map->m[axis] : NULL;
     return row ? ((fabs(row[0]) * own[0] + fabs(row[1]) * own[1]) + fabs(row[2]) * own[2]) + fabs(row[3]) : 0;
 }
 
-void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3],
+void glint_face_bound(glint_face *face, const glint_placing *placing, const double lower[3], const double upper[3],
                       const double own[3])
 {
-    double places = 0;
+    double magnitude = 0;
     for (int c = 0; c < 3; c++) {
-        const double moved = moved_by(place, c, own);
-        places += fabs(face->normal[c]) * ((fmax(fabs(lower[c]), fabs(upper[c])) + fabs(face->at[c])) + moved);
+        const double moved = moved_by(placing, c, own);
+        magnitude += fabs(face->normal[c]) * ((fmax(fabs(lower[c]), fabs(upper[c])) + fabs(face->at[c])) + moved);
     }
-    face->places = fmax(face->places, places);
+    face->magnitude = fmax(face->magnitude, magnitude);
 }
 
-void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glint_placing *place, glint_face *out)
+void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glint_placing *placing, glint_face *out)
 {
     double along[3];
     if (form == GLINT_FORM_BOX) {
         for (int i = 0; i < 6; i++) {
             for (int c = 0; c < 3; c++)
                 along[c] = c == i / 2;
-            glint_face_init(&out[i], place, along, i % 2 ? desc->max : desc->min);
+            glint_face_init(&out[i], placing, along, i % 2 ? desc->max : desc->min);
         }
         return;
     }
@@ -70,8 +70,8 @@ void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glin
     const double *high = disk ? desc->center : cone ? desc->base : desc->top;
     for (int c = 0; c < 3; c++)
         along[c] = disk ? desc->normal[c] : 0.5 * high[c] - 0.5 * low[c];
-    glint_face_init(&out[0], place, along, low);
-    glint_face_init(&out[1], place, along, high);
+    glint_face_init(&out[0], placing, along, low);
+    glint_face_init(&out[1], placing, along, high);
 }
 
 int glint_level_axis(const glint_mesh *mesh, size_t triangle)

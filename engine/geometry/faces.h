@@ -13,19 +13,19 @@ typedef struct glint_placing {
 } glint_placing;
 
 /// Maps a point to the world. `out` may be `p`.
-void glint_place_point(const glint_placing *place, const double p[3], double out[3]);
+void glint_place_point(const glint_placing *placing, const double p[3], double out[3]);
 /// Maps a normal. It keeps its side of the surface, under mirroring maps, too. A normal of length 0 stays 0.
-void glint_place_normal(const glint_placing *place, const double n[3], double out[3]);
+void glint_place_normal(const glint_placing *placing, const double n[3], double out[3]);
 
 /// Computes the plane through a point, perpendicular to a normal of any length, from as few numbers as possible: if
 /// the normal is along an axis, only from the point's coordinate on that axis.
-void glint_face_init(glint_face *face, const glint_placing *place, const double normal[3], const double point[3]);
+void glint_face_init(glint_face *face, const glint_placing *placing, const double normal[3], const double point[3]);
 /// Includes a surface within lower .. upper in the face's bounds; in its own space no coordinate is beyond +-own.
-void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3],
+void glint_face_bound(glint_face *face, const glint_placing *placing, const double lower[3], const double upper[3],
                       const double own[3]);
 
 /// Computes the faces of a solid, in the order of glint_solid; out: space for six.
-void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glint_placing *place, glint_face *out);
+void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glint_placing *placing, glint_face *out);
 
 /// Returns the axis that a triangle of a mesh is perpendicular to: all corners have the same coordinate there. 3:
 /// there is none.

@@ -9,18 +9,18 @@
 
 /// Maps the normal of a corner for smooth shading. If the map does not preserve angles, normals keep their mapped
 /// lengths, in common units: interpolated normals are then the map of normals interpolated in the mesh's own space.
-static void place_corner_normal(const glint_placing *place, const double n[3], double out[3])
+static void place_corner_normal(const glint_placing *placing, const double n[3], double out[3])
 {
     double largest = 0;
-    if (!place->map || place->similar) {
-        glint_place_normal(place, n, out);
+    if (!placing->map || placing->similar) {
+        glint_place_normal(placing, n, out);
         return;
     }
     for (int c = 0; c < 3; c++)
-        largest = fmax(largest, vec_max_abs(place->cofactors[c]));
-    const double scale = power_of_two_scale(largest) * (place->determinant < 0 ? -1 : 1);
+        largest = fmax(largest, vec_max_abs(placing->cofactors[c]));
+    const double scale = power_of_two_scale(largest) * (placing->determinant < 0 ? -1 : 1);
     for (int c = 0; c < 3; c++)
-        out[c] = vec_dot(place->cofactors[c], n) * scale;
+        out[c] = vec_dot(placing->cofactors[c], n) * scale;
 }
 
 glint_status glint_fill_material(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error)
@@ -68,7 +68,8 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
 }
 
 /// Makes a triangle perpendicular to an axis share its plane with others, starting with its own mesh.
-static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
+static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i,
+                       const glint_placing *placing)
 {
     double lower[3], upper[3], normal[3], own[3] = { 0, 0, 0 };
     const int axis = glint_level_axis(mesh, i);
@@ -78,7 +79,7 @@ static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh
     if (axis != f->level_axis || corner[axis] != f->level) {
         for (int c = 0; c < 3; c++)
             normal[c] = c == axis;
-        glint_face_init(&f->geometry->faces[f->face_count++], place, normal, corner);
+        glint_face_init(&f->geometry->faces[f->face_count++], placing, normal, corner);
     }
     f->level_axis = axis;
     f->level = corner[axis];
@@ -87,11 +88,11 @@ static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh
     for (int j = 0; j < 3; j++)
         for (int c = 0; c < 3; c++)
             own[c] = fmax(own[c], fabs(mesh->vertices[mesh->triangles[i][j]][c]));
-    glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper, own);
+    glint_face_bound(&f->geometry->faces[prim->face - 1], placing, lower, upper, own);
 }
 
 void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i,
-                         const glint_placing *place, bool reversed)
+                         const glint_placing *placing, bool reversed)
 {
     const glint_mesh *mesh = shape->mesh;
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
@@ -102,37 +103,38 @@ void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *s
     prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
     for (int j = 0; j < 3; j++) {
         const int from = reversed ? (3 - j) % 3 : j;
-        glint_place_point(place, mesh->vertices[at[from]], prim->corner[j]);
+        glint_place_point(placing, mesh->vertices[at[from]], prim->corner[j]);
         if (prim->item != GLINT_MISS)
-            place_corner_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
+            place_corner_normal(placing, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
         if (prim->shading_points != GLINT_MISS)
             name_shading_point(f->geometry, prim, j,
                                f->geometry->table.shading_point_count + shading_point_of(shape, i, from));
     }
-    share_face(f, prim, mesh, i, place);
+    share_face(f, prim, mesh, i, placing);
 }
 
-void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place)
+void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *placing)
 {
     glint_geometry *geometry = f->geometry;
     prim->item = f->solid_count++;
-    f->face_count += (uint32_t)glint_solid_init(prim, &geometry->solids[prim->item], desc, place,
+    f->face_count += (uint32_t)glint_solid_init(prim, &geometry->solids[prim->item], desc, placing,
                                                 geometry->faces ? geometry->faces + f->face_count : NULL);
     geometry->table.tori = geometry->table.tori || desc->kind == GLINT_SHAPE_TORUS;
 }
 
 /// Adds a ball, which stays a sphere if the map preserves angles.
-static void add_ball(glint_filler *f, glint_prim *prim, const double center[3], double radius, const glint_placing *place)
+static void add_ball(glint_filler *f, glint_prim *prim, const double center[3], double radius,
+                     const glint_placing *placing)
 {
     double factor = 1, moved[3];
-    if (!place->map || glint_transform_similar(place->map, &factor)) {
-        glint_place_point(place, center, moved);
+    if (!placing->map || glint_transform_similar(placing->map, &factor)) {
+        glint_place_point(placing, center, moved);
         glint_sphere_init(prim, moved, radius * factor);
         return;
     }
     glint_shape_desc desc = { .kind = GLINT_SHAPE_SPHERE, .radius = radius };
     vec_copy(desc.center, center);
-    glint_fill_solid(f, prim, &desc, place);
+    glint_fill_solid(f, prim, &desc, placing);
 }
 
 void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided)
@@ -141,7 +143,7 @@ void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t
     f->geometry->prim_part[prim->id] = part;
 }
 
-static void add_prim(glint_filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *place)
+static void add_prim(glint_filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *placing)
 {
     glint_geometry *geometry = f->geometry;
     const glint_shape_desc *desc = &shape->desc;
@@ -150,36 +152,36 @@ static void add_prim(glint_filler *f, const glint_shape *shape, size_t i, uint32
     glint_fill_dress(f, prim, part, material, material, desc->two_sided);
     switch (desc->kind) {
     case GLINT_SHAPE_MESH:
-        glint_fill_triangle(f, prim, shape, i, place, glint_is_mirroring(place));
+        glint_fill_triangle(f, prim, shape, i, placing, glint_is_mirroring(placing));
         break;
     case GLINT_SHAPE_SPHERES:
-        add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], place);
+        add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], placing);
         break;
     case GLINT_SHAPE_SPHERE:
-        add_ball(f, prim, desc->center, desc->radius, place);
+        add_ball(f, prim, desc->center, desc->radius, placing);
         break;
     case GLINT_SHAPE_PLANE:
-        glint_plane_init(prim, geometry->planes[f->plane_count++], desc->point, desc->normal, place);
+        glint_plane_init(prim, geometry->planes[f->plane_count++], desc->point, desc->normal, placing);
         break;
     default:
-        glint_fill_solid(f, prim, desc, place);
+        glint_fill_solid(f, prim, desc, placing);
         break;
     }
 }
 
-void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *place)
+void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *placing)
 {
     glint_geometry *geometry = f->geometry;
     geometry->parts[part] =
         (glint_part) { .shape = shape, .dress = shape, .first_prim = f->id_count, .first_object = f->object_count };
-    if (place->map) {
-        geometry->maps[f->map_count] = *place->map;
+    if (placing->map) {
+        geometry->maps[f->map_count] = *placing->map;
         geometry->parts[part].map = &geometry->maps[f->map_count++];
     }
     geometry->part_count++;
 }
 
-static glint_status add_prims(glint_filler *f, glint_shape *shape, const glint_placing *place)
+static glint_status add_prims(glint_filler *f, glint_shape *shape, const glint_placing *placing)
 {
     glint_geometry *geometry = f->geometry;
     for (size_t i = 0; i < shape->material_count; i++) {
@@ -188,10 +190,10 @@ static glint_status add_prims(glint_filler *f, glint_shape *shape, const glint_p
             return status;
     }
     const uint32_t part = geometry->whole_count++;
-    glint_fill_part(f, part, shape, place);
+    glint_fill_part(f, part, shape, placing);
     f->level_axis = 3;
     for (size_t i = 0; i < shape->count; i++)
-        add_prim(f, shape, i, part, place);
+        add_prim(f, shape, i, part, placing);
     f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
     geometry->table.triangles += shape->mesh ? (uint32_t)shape->count : 0;
     geometry->table.shading_point_count += (uint32_t)count_shading_points(shape);
@@ -199,22 +201,22 @@ static glint_status add_prims(glint_filler *f, glint_shape *shape, const glint_p
 }
 
 glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape, const glint_transform *around,
-                                 glint_transform *map, glint_placing *place)
+                                 glint_transform *map, glint_placing *placing)
 {
     double linear[3][3], factor = 1;
     glint_status status = GLINT_OK;
     *map = around ? glint_transform_product(around, &shape->desc.transform) : shape->desc.transform;
-    *place = (glint_placing) { .map = map };
+    *placing = (glint_placing) { .map = map };
     if (glint_transform_is_identity(map))
-        place->map = NULL;
+        placing->map = NULL;
     else if (around)
         status = glint_check_transform("group.transform: combined with the groups around it", map, f->error);
     if (status)
         return status;
     glint_transform_linear(map, linear);
     glint_linear_scale(linear);
-    place->determinant = glint_linear_cofactors(linear, place->cofactors);
-    place->similar = !place->map || glint_transform_similar(map, &factor);
+    placing->determinant = glint_linear_cofactors(linear, placing->cofactors);
+    placing->similar = !placing->map || glint_transform_similar(map, &factor);
     return GLINT_OK;
 }
 
@@ -222,16 +224,16 @@ glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape,
 static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_transform *around)
 {
     glint_transform map;
-    glint_placing place;
-    glint_status status = glint_fill_placing(f, shape, around, &map, &place);
+    glint_placing placing;
+    glint_status status = glint_fill_placing(f, shape, around, &map, &placing);
     if (status)
         return status;
     if (glint_shape_combines(shape))
-        return glint_fill_combined(f, shape, &place, around);
+        return glint_fill_combined(f, shape, &placing, around);
     if (shape->desc.kind != GLINT_SHAPE_GROUP)
-        return add_prims(f, shape, &place);
+        return add_prims(f, shape, &placing);
     for (size_t i = 0; i < shape->children.count && !status; i++)
-        status = add_shape(f, shape->children.items[i], place.map);
+        status = add_shape(f, shape->children.items[i], placing.map);
     return status;
 }
 

@@ -23,21 +23,22 @@ typedef struct glint_filler {
 
 /// Writes the index of the shape's material in `materials`, and appends new ones.
 glint_status glint_fill_material(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error);
-/// Fills in a part. place: the shape's placement under all groups around it.
-void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *place);
+/// Fills in a part. placing: the shape's placement under all groups around it.
+void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *placing);
 /// Fills in the fields of a primitive that do not depend on its position.
 void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided);
-void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place);
+void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *placing);
 /// Fills in a triangle. reversed: its corners are taken in reverse order, so that the front stays the front under a
 /// mirroring map.
 void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i,
-                         const glint_placing *place, bool reversed);
+                         const glint_placing *placing, bool reversed);
 /// Computes a shape's placement. around: the map of the groups that contain it; NULL: the identity. map: memory for
 /// the product.
 glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape, const glint_transform *around, glint_transform *map,
-                                glint_placing *place);
+                                glint_placing *placing);
 /// fill_combined.c: adds a combined solid and its parts. around: as above.
-glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *place, const glint_transform *around);
+glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *placing,
+                                 const glint_transform *around);
 
 /// Returns how many parts of a combined solid a shape counts as. Not for groups.
 static inline uint32_t glint_member_parts(const glint_shape *shape)
@@ -45,6 +46,6 @@ static inline uint32_t glint_member_parts(const glint_shape *shape)
     return shape->mesh ? GLINT_HULL_PARTS : shape->desc.kind == GLINT_SHAPE_TORUS ? 2 : 1;
 }
 
-static inline bool glint_is_mirroring(const glint_placing *place) { return place->map && place->determinant < 0; }
+static inline bool glint_is_mirroring(const glint_placing *placing) { return placing->map && placing->determinant < 0; }
 
 #endif

@@ -33,8 +33,8 @@ static glint_status too_many_parts(const glint_filler *f, const maker *m)
 }
 
 /// Adds a part without its position. order: see glint_prim.face.
-static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                                 bool inverted, uint32_t order, glint_prim **out)
+static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *placing,
+                                 const glint_shape *dress, bool inverted, uint32_t order, glint_prim **out)
 {
     glint_geometry *geometry = f->geometry;
     uint32_t material;
@@ -43,7 +43,7 @@ static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, 
         return status;
     const uint32_t part = (uint32_t)f->parts + f->member_count;
     glint_prim *prim = *out = &geometry->members[f->member_count++];
-    glint_fill_part(f, part, shape, place);
+    glint_fill_part(f, part, shape, placing);
     geometry->parts[part].dress = dress;
     geometry->parts[part].whole = m->shape;
     glint_fill_dress(f, prim, part, material, m->medium, m->shape->desc.two_sided);
@@ -56,31 +56,31 @@ static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, 
 }
 
 /// Adds a part that is a solid, ball or plane; half: 0, or 1 and 2 for a torus.
-static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                               bool inverted, uint32_t half)
+static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *placing,
+                               const glint_shape *dress, bool inverted, uint32_t half)
 {
     glint_prim *prim;
-    glint_status status = start_member(f, m, shape, place, dress, inverted, half, &prim);
+    glint_status status = start_member(f, m, shape, placing, dress, inverted, half, &prim);
     if (status)
         return status;
     if (shape->desc.kind == GLINT_SHAPE_PLANE) {
-        glint_plane_init(prim, f->geometry->planes[f->plane_count++], shape->desc.point, shape->desc.normal, place);
+        glint_plane_init(prim, f->geometry->planes[f->plane_count++], shape->desc.point, shape->desc.normal, placing);
         return GLINT_OK;
     }
-    glint_fill_solid(f, prim, &shape->desc, place);
+    glint_fill_solid(f, prim, &shape->desc, placing);
     prim->face = half;
     return GLINT_OK;
 }
 
 /// Adds the triangles of a part that is a mesh; the indices of their materials are in f->numbers.
-static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *shape, const glint_placing *place,
+static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *shape, const glint_placing *placing,
                                const glint_shape *dress, bool inverted, glint_prim *box)
 {
     glint_geometry *geometry = f->geometry;
     const uint32_t part = (uint32_t)(f->parts + f->members) + f->hull_count;
     glint_hull *hull = &geometry->hulls[f->hull_count++];
     *hull = (glint_hull) { .first = (uint32_t)f->members + f->hull_prim_count, .count = (uint32_t)shape->count };
-    glint_fill_part(f, part, shape, place);
+    glint_fill_part(f, part, shape, placing);
     geometry->parts[part].dress = dress;
     geometry->parts[part].whole = m->shape;
     f->level_axis = 3;
@@ -89,8 +89,8 @@ static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *sha
         double lower[3], upper[3];
         glint_fill_dress(f, prim, part, f->numbers[dress == shape && shape->index ? shape->index[i] : 0], m->medium,
                    m->shape->desc.two_sided);
-        glint_fill_triangle(f, prim, shape, i, place,
-                            (glint_is_mirroring(place) != shape->mesh->closure.inverted) != inverted);
+        glint_fill_triangle(f, prim, shape, i, placing,
+                            (glint_is_mirroring(placing) != shape->mesh->closure.inverted) != inverted);
         glint_prim_bounds(NULL, prim, lower, upper);
         for (int c = 0; c < 3; c++) {
             box->corner[1][c] = i ? fmin(box->corner[1][c], lower[c]) : lower[c];
@@ -101,8 +101,8 @@ static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *sha
 }
 
 /// Adds a closed mesh: several parts for one mesh, and its triangles.
-static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                             bool inverted)
+static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *placing,
+                             const glint_shape *dress, bool inverted)
 {
     glint_status status = GLINT_OK;
     glint_prim *prim[GLINT_HULL_PARTS];
@@ -110,12 +110,12 @@ static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, cons
     for (size_t i = 0; i < dress->material_count && !status; i++)
         status = glint_fill_material(&f->geometry->materials, dress->materials[i], &f->numbers[i], f->error);
     for (uint32_t k = 0; k < GLINT_HULL_PARTS && !status; k++)
-        status = start_member(f, m, shape, place, dress, inverted, k + 1, &prim[k]);
+        status = start_member(f, m, shape, placing, dress, inverted, k + 1, &prim[k]);
     if (status)
         return status;
     for (uint32_t k = 0; k < GLINT_HULL_PARTS; k++)
         prim[k]->corner = f->geometry->corners[f->corner_count++];
-    add_hull_triangles(f, m, shape, place, dress, inverted, prim[0]);
+    add_hull_triangles(f, m, shape, placing, dress, inverted, prim[0]);
     for (uint32_t k = 0; k < GLINT_HULL_PARTS; k++) {
         prim[k]->kind = GLINT_PRIM_HULL;
         prim[k]->item = hull;
@@ -141,8 +141,8 @@ static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, 
 {
     glint_combined *combined = m->combined;
     glint_transform map;
-    glint_placing place;
-    glint_status status = glint_fill_placing(f, shape, around, &map, &place);
+    glint_placing placing;
+    glint_status status = glint_fill_placing(f, shape, around, &map, &placing);
     if (status)
         return status;
     if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
@@ -151,18 +151,18 @@ static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, 
     if (combined->count + m->nothings + glint_member_parts(shape) > GLINT_PARTS_MAX)
         return too_many_parts(f, m);
     if (shape->mesh)
-        return add_hull(f, m, shape, &place, dress, inverted);
+        return add_hull(f, m, shape, &placing, dress, inverted);
     if (torus)
-        status = add_member(f, m, shape, &place, dress, inverted, 1);
+        status = add_member(f, m, shape, &placing, dress, inverted, 1);
     if (!glint_shape_has_children(shape))
-        return status ? status : add_member(f, m, shape, &place, dress, inverted, torus ? 2 : 0);
+        return status ? status : add_member(f, m, shape, &placing, dress, inverted, torus ? 2 : 0);
     if (shape->children.count == 0) {
         combined->program[combined->length++] = GLINT_COMBINE_NOTHING;
         m->nothings++;
     }
     for (size_t i = 0; i < shape->children.count && !status; i++) {
         const bool away = i > 0 && shape->desc.kind == GLINT_SHAPE_DIFFERENCE;
-        status = add_to_whole(f, m, shape->children.items[i], place.map, dress, inverted != away);
+        status = add_to_whole(f, m, shape->children.items[i], placing.map, dress, inverted != away);
         if (i > 0)
             combined->program[combined->length++] = operation_of(shape);
     }
@@ -170,7 +170,7 @@ static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, 
 }
 
 /// Adds a combined solid. around: as for add_shape.
-glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *place,
+glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *placing,
                                  const glint_transform *around)
 {
     glint_geometry *geometry = f->geometry;
@@ -183,7 +183,7 @@ glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glin
     glint_status status = glint_fill_material(&geometry->materials, dress->materials[0], &m.medium, f->error);
     if (status)
         return status;
-    glint_fill_part(f, part, shape, place);
+    glint_fill_part(f, part, shape, placing);
     geometry->parts[part].dress = dress;
     *m.combined = (glint_combined) { .first = f->member_count };
     glint_fill_dress(f, prim, part, m.medium, m.medium, shape->desc.two_sided);

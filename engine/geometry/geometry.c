@@ -9,32 +9,33 @@
 
 // ---- Equal primitives ----
 
-#define PLACES 32u ///< primitives that are looked up together
+#define LOOKUPS 32u ///< primitives that are looked up together
 
 /// A primitive in a hash table of positions.
-typedef struct place_slot {
+typedef struct record_slot {
     uint32_t number; ///< index + 1; 0: free
     uint32_t tag; ///< bits of the hash that the slot's index does not contain
-} place_slot;
+} record_slot;
 
 static bool is_repeat(const glint_geometry *geometry, uint32_t i, uint32_t other)
 {
-    double place[GLINT_PLACE_MAX], same[GLINT_PLACE_MAX];
-    const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
-    glint_prim_place(geometry, &geometry->prims[other], same);
-    return memcmp(place, same, bytes) == 0; // the kind comes first, so records of different lengths differ there
+    double record[GLINT_PRIM_RECORD_MAX], same[GLINT_PRIM_RECORD_MAX];
+    const size_t bytes = (size_t)glint_prim_record(geometry, &geometry->prims[i], record) * sizeof *record;
+    glint_prim_record(geometry, &geometry->prims[other], same);
+    return memcmp(record, same, bytes) == 0; // the kind comes first, so records of different lengths differ there
 }
 
 /// Marks the primitives, `count` of them, that are bit-equal to an earlier one. Prefetches their slots first.
-static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t count, place_slot *slots, size_t mask)
+static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t count, record_slot *slots, size_t mask)
 {
-    glint_key keys[PLACES];
+    glint_key keys[LOOKUPS];
     for (uint32_t n = 0; n < count; n++) {
-        double place[GLINT_PLACE_MAX];
+        double record[GLINT_PRIM_RECORD_MAX];
         const glint_prim *prim = &geometry->prims[first + n];
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             continue; // a separate rule handles all triangles of a plane
-        keys[n] = glint_key_add((glint_key) { 0 }, place, (size_t)glint_prim_place(geometry, prim, place) * sizeof *place);
+        keys[n] = glint_key_add((glint_key) { 0 }, record,
+                                (size_t)glint_prim_record(geometry, prim, record) * sizeof *record);
         __builtin_prefetch(&slots[keys[n].low & mask]);
     }
     for (uint32_t n = 0; n < count; n++) {
@@ -47,7 +48,7 @@ static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t coun
         if (slots[at].number)
             geometry->prims[i].filter_bound = GLINT_REPEATED;
         else
-            slots[at] = (place_slot) { i + 1, tag };
+            slots[at] = (record_slot) { i + 1, tag };
     }
 }
 
@@ -58,12 +59,12 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
     size_t size = 16, unlike = count - geometry->table.triangles;
     while (size < 2 * unlike)
         size *= 2;
-    place_slot *slots = glint_scratch_resize(NULL, 0, size * sizeof *slots);
+    record_slot *slots = glint_scratch_resize(NULL, 0, size * sizeof *slots);
     if (!slots)
         return glint_fail_nomem(error);
     memset(slots, 0, size * sizeof *slots);
-    for (uint32_t i = 0; i < count && unlike; i += PLACES)
-        mark_repeats(geometry, i, count - i < PLACES ? count - i : PLACES, slots, size - 1);
+    for (uint32_t i = 0; i < count && unlike; i += LOOKUPS)
+        mark_repeats(geometry, i, count - i < LOOKUPS ? count - i : LOOKUPS, slots, size - 1);
     glint_scratch_free(slots, size * sizeof *slots);
     return GLINT_OK;
 }
@@ -74,12 +75,12 @@ static void make_keys(glint_geometry *geometry)
     enum { CHUNK = 32 };
     size_t smooth = 0, shared = 0;
     for (uint32_t i = 0; i < geometry->table.prim_count; i += CHUNK) {
-        double place[CHUNK * GLINT_PLACE_MAX];
+        double record[CHUNK * GLINT_PRIM_RECORD_MAX];
         uint32_t look[CHUNK][2], n = 0;
         size_t numbers = 0;
         for (; n < CHUNK && i + n < geometry->table.prim_count; n++) {
             const glint_prim *prim = &geometry->prims[i + n];
-            numbers += (size_t)glint_prim_place(geometry, prim, place + numbers);
+            numbers += (size_t)glint_prim_record(geometry, prim, record + numbers);
             const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
             const bool shading_points = triangle && prim->shading_points != GLINT_MISS;
             const uint32_t *part =
@@ -90,7 +91,7 @@ static void make_keys(glint_geometry *geometry)
             smooth += !flat;
             shared += shading_points;
         }
-        geometry->where = glint_key_add(geometry->where, place, numbers * sizeof *place);
+        geometry->where = glint_key_add(geometry->where, record, numbers * sizeof *record);
         geometry->look = glint_key_add(geometry->look, look, n * sizeof look[0]);
     }
     for (uint32_t i = 0; i < geometry->member_count; i++) {
@@ -211,7 +212,7 @@ static void index_release(glint_index *index)
 }
 
 /// Returns the next position in the order; triangles come first. next: the next position of triangles, and of others.
-static inline uint32_t take_place(const glint_geometry *geometry, uint32_t i, uint32_t next[2])
+static inline uint32_t take_position(const glint_geometry *geometry, uint32_t i, uint32_t next[2])
 {
     const glint_geometry_table *table = &geometry->table;
     const bool mixed = table->triangles && table->triangles < geometry->index->box_count;
@@ -228,9 +229,9 @@ static void order_by_tree(const glint_geometry *geometry)
         for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
             if (!(node->lower[0][i] <= node->upper[0][i]) || !(node->child[i] & GLINT_NODE_PRIM))
                 continue;
-            const uint32_t from = node->child[i] & ~GLINT_NODE_PRIM, place = take_place(geometry, from, next);
-            index->order[place] = from;
-            node->child[i] = GLINT_NODE_PRIM | place;
+            const uint32_t from = node->child[i] & ~GLINT_NODE_PRIM, position = take_position(geometry, from, next);
+            index->order[position] = from;
+            node->child[i] = GLINT_NODE_PRIM | position;
         }
     }
 }
@@ -245,7 +246,7 @@ static glint_status make_order(const glint_geometry *geometry, glint_error *erro
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < geometry->table.prim_count; i++)
         if (glint_prim_in_tree(&geometry->prims[i]))
-            index->order[take_place(geometry, i, next)] = i;
+            index->order[take_position(geometry, i, next)] = i;
     index->plain = true;
     return GLINT_OK;
 }
@@ -357,7 +358,7 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->unbounded);
     free(geometry->shading_points);
     free(geometry->shading_point_prims);
-    free(geometry->places);
+    free(geometry->index_of_id);
     free(geometry);
 }
 

@@ -48,7 +48,7 @@ struct glint_geometry {
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
     glint_shading_points *shading_points; ///< of triangles with light computed per face or vertex
     uint32_t *shading_point_prims; ///< id of the first triangle of each shading point
-    uint32_t *places; ///< position of each id's primitive, once arranged; NULL: there are no shading points
+    uint32_t *index_of_id; ///< position of each id's primitive, once arranged; NULL: there are no shading points
     glint_solid *solids;
     glint_combined *combined;
     glint_hull *hulls; ///< meshes of combined solids; `first` counts from the first member
@@ -108,8 +108,8 @@ glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *e
 glint_status glint_geometry_check_reach(const glint_geometry *geometry, const char *who, const double from[3],
                                         glint_error *error);
 /// Writes all numbers that define a primitive's position, and returns how many they are.
-enum { GLINT_PLACE_MAX = 50 };
-int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX]);
+enum { GLINT_PRIM_RECORD_MAX = 50 };
+int glint_prim_record(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PRIM_RECORD_MAX]);
 /// Computes a box around a bounded primitive.
 void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double lower[3], double upper[3]);
 
@@ -154,6 +154,6 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
 /// Computes the sets of parts that follow from its program: all, needs, alone.
 void glint_combined_roles(glint_combined *combined);
 /// Returns whether a point is inside the combined solid.
-bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3]);
+bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double point[3]);
 
 #endif

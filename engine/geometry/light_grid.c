@@ -21,7 +21,7 @@
 #define COUNT_MAX 32767 ///< most columns or rows
 #define SORTED_FROM 24 ///< entries per cell on average, from which sorting them pays
 #define SLICES 1024 ///< slices of depth for sorting
-#define PLACE_SLACK 0x1p-21 ///< shift of a position by float rounding, relative to 1 and to the position
+#define CENTER_SLACK 0x1p-21 ///< shift of a position by float rounding, relative to 1 and to the position
 /// Steps by which rounding may shift an entry's position and a point's, along both axes together
 #define STEP_SLACK 1.5
 #define CELL_SLACK 0x1p-21 ///< further shift, as a fraction of the grid's width
@@ -31,7 +31,7 @@
 
 /// A small sphere as the light sees it.
 typedef struct seen_sphere {
-    float place[2], reach; ///< its centre, and how far from there a segment that hits it may be
+    float center[2], reach; ///< its centre, and how far from there a segment that hits it may be
     float radius; ///< radius of its circle in the light's view: see glint_light_grid
     float near; ///< w of its nearest point
     uint32_t id;
@@ -116,11 +116,11 @@ static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, co
         return false;
     const double u = vec_dot(grid->axis[0], offset) * per_w, v = vec_dot(grid->axis[1], offset) * per_w;
     const double wide = sqrt(u * u + v * v), size = grid->directional ? distance : wide;
-    const double r = radius * per_w * (1 + 1e-6) + PLACE_SLACK * (1 + size);
+    const double r = radius * per_w * (1 + 1e-6) + CENTER_SLACK * (1 + size);
     const double reach = grid->directional ? r : r * sqrt(1 + wide * wide) / (1 - r);
-    out->place[0] = (float)u;
-    out->place[1] = (float)v;
-    out->reach = (float)((reach + PLACE_SLACK * (1 + size)) * (1 + 1e-6));
+    out->center[0] = (float)u;
+    out->center[1] = (float)v;
+    out->reach = (float)((reach + CENTER_SLACK * (1 + size)) * (1 + 1e-6));
     out->radius = (float)(r * (1 + 1e-6));
     out->near = (float)((w - radius) - 1e-6 * (distance + radius));
     out->id = id;
@@ -178,7 +178,7 @@ static bool take_large(grid_maker *maker, float limit)
     return true;
 }
 
-static void bound_places(grid_maker *maker)
+static void bound_centers(grid_maker *maker)
 {
     for (int j = 0; j < 2; j++) {
         maker->least[j] = HUGE_VALF;
@@ -189,8 +189,8 @@ static void bound_places(grid_maker *maker)
     for (uint32_t i = 0; i < maker->count; i++) {
         const seen_sphere *s = &maker->seen[i];
         for (int j = 0; j < 2; j++) {
-            maker->least[j] = fminf(maker->least[j], s->place[j] - s->reach);
-            maker->most[j] = fmaxf(maker->most[j], s->place[j] + s->reach);
+            maker->least[j] = fminf(maker->least[j], s->center[j] - s->reach);
+            maker->most[j] = fmaxf(maker->most[j], s->center[j] + s->reach);
         }
         maker->near = fminf(maker->near, s->near);
         maker->far = fmaxf(maker->far, s->near);
@@ -206,8 +206,8 @@ static inline void cells_of(const glint_light_grid *grid, const seen_sphere *s, 
 {
     for (int j = 0; j < 2; j++) {
         const float most = (float)(grid->count[j] - 1);
-        first[j] = clamp(((s->place[j] - s->reach) - grid->first[j]) * grid->cells, most);
-        last[j] = clamp(((s->place[j] + s->reach) - grid->first[j]) * grid->cells, most);
+        first[j] = clamp(((s->center[j] - s->reach) - grid->first[j]) * grid->cells, most);
+        last[j] = clamp(((s->center[j] + s->reach) - grid->first[j]) * grid->cells, most);
     }
 }
 
@@ -245,7 +245,7 @@ static uint64_t choose_cells(grid_maker *maker)
         side *= 2;
     if (tries > 32 || maker->count < SMALLEST_COUNT || limit < (uint64_t)ENTRIES_LEAST * maker->count)
         return 0;
-    bound_places(maker);
+    bound_centers(maker);
     for (; tries++ < 64; side *= 1.5F) {
         const uint64_t entries = count_entries(maker, side, limit);
         if (entries <= limit)
@@ -290,7 +290,7 @@ static bool sort_by_depth(grid_maker *maker)
 
 /// The state of writing a grid's entries.
 typedef struct grid_entries {
-    uint32_t *place, *size, *id;
+    uint32_t *center, *size, *id;
 } grid_entries;
 
 /// Returns the part of a sphere's entries that is the same in all cells.
@@ -307,8 +307,8 @@ static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
 /// Returns a sphere's position along an axis, relative to a cell.
 static uint32_t step_of(const glint_light_grid *grid, const seen_sphere *s, int axis, uint32_t cell)
 {
-    const double place = ((double)s->place[axis] - (double)grid->first[axis]) * (double)grid->cells - cell;
-    return (uint32_t)(int32_t)((place + GLINT_GRID_ASIDE) * GLINT_GRID_STEPS + 0.5);
+    const double step = ((double)s->center[axis] - (double)grid->first[axis]) * (double)grid->cells - cell;
+    return (uint32_t)(int32_t)((step + GLINT_GRID_ASIDE) * GLINT_GRID_STEPS + 0.5);
 }
 
 /// Writes a sphere to the position `next` of each of its cells.
@@ -320,7 +320,7 @@ static void enter(const glint_light_grid *grid, const seen_sphere *s, const uint
     for (uint32_t row = first[1]; row <= last[1]; row++, down -= GLINT_GRID_STEPS)
         for (uint32_t column = first[0]; column <= last[0]; column++) {
             const uint32_t at = next[(size_t)row * grid->count[0] + column]++;
-            entries->place[at] = down << 16 | (across - (column - first[0]) * GLINT_GRID_STEPS);
+            entries->center[at] = down << 16 | (across - (column - first[0]) * GLINT_GRID_STEPS);
             entries->size[at] = size;
             entries->id[at] = s->id;
         }
@@ -342,7 +342,7 @@ static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *
     }
 }
 
-/// Allocates the entries in one block that begins at `place`, with padding that the stage loads after the last one.
+/// Allocates the entries in one block that begins at `center`, with padding that the stage loads after the last one.
 static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *out)
 {
     const size_t length = (size_t)count + GLINT_GROUP;
@@ -352,7 +352,7 @@ static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *o
     *out = (grid_entries) { memory, memory + length, memory + 2 * length };
     for (size_t k = 1; k <= 3; k++)
         memset(memory + k * length - GLINT_GROUP, 0, GLINT_GROUP * sizeof *memory);
-    grid->place = out->place;
+    grid->center = out->center;
     grid->size = out->size;
     grid->id = out->id;
     return true;
@@ -412,6 +412,6 @@ void glint_light_grid_destroy(glint_light_grid *grid)
     if (!grid)
         return;
     free((void *)(uintptr_t)grid->begin);
-    free((void *)(uintptr_t)grid->place); // the other entries are in the same block
+    free((void *)(uintptr_t)grid->center); // the other entries are in the same block
     free(grid);
 }

@@ -14,10 +14,10 @@ void glint_sphere_init(glint_prim *prim, const double center[3], double radius)
 }
 
 void glint_plane_init(glint_prim *prim, double buffer[4], const double point[3], const double normal[3],
-                      const glint_placing *place)
+                      const glint_placing *placing)
 {
     glint_face face;
-    glint_face_init(&face, place, normal, point);
+    glint_face_init(&face, placing, normal, point);
     prim->kind = GLINT_PRIM_PLANE;
     vec_copy(prim->center, face.at);
     prim->normal = buffer;
@@ -35,34 +35,35 @@ static int copy_face(double *out, const glint_face *face)
 }
 
 /// Writes a key over the positions of all parts, which represents them.
-static int combined_place(const glint_geometry *geometry, const glint_combined *combined, double out[GLINT_PLACE_MAX])
+static int combined_record(const glint_geometry *geometry, const glint_combined *combined,
+                           double out[GLINT_PRIM_RECORD_MAX])
 {
     glint_key key = glint_key_add((glint_key) { 0 }, combined->program, combined->length);
     for (uint32_t j = 0; j < combined->count; j++) {
-        double place[GLINT_PLACE_MAX];
-        const int count = glint_prim_place(geometry, &geometry->members[combined->first + j], place);
-        key = glint_key_add(key, place, (size_t)count * sizeof *place);
+        double record[GLINT_PRIM_RECORD_MAX];
+        const int count = glint_prim_record(geometry, &geometry->members[combined->first + j], record);
+        key = glint_key_add(key, record, (size_t)count * sizeof *record);
     }
     memcpy(out + 1, &key, sizeof key);
     return 1 + (int)(sizeof key / sizeof *out);
 }
 
 /// Writes a key over the positions of a mesh's triangles, which represents them.
-static int hull_place(const glint_geometry *geometry, const glint_prim *part, double out[GLINT_PLACE_MAX])
+static int hull_record(const glint_geometry *geometry, const glint_prim *part, double out[GLINT_PRIM_RECORD_MAX])
 {
     const glint_hull *hull = &geometry->hulls[part->item];
     glint_key key = { 0 };
     for (uint32_t i = 0; i < hull->count && part->face == 1; i++) {
-        double place[GLINT_PLACE_MAX];
-        const int count = glint_prim_place(geometry, &geometry->members[hull->first + i], place);
-        key = glint_key_add(key, place, (size_t)count * sizeof *place);
+        double record[GLINT_PRIM_RECORD_MAX];
+        const int count = glint_prim_record(geometry, &geometry->members[hull->first + i], record);
+        key = glint_key_add(key, record, (size_t)count * sizeof *record);
     }
     out[1] = part->face;
     memcpy(out + 2, &key, sizeof key);
     return 2 + (int)(sizeof key / sizeof *out);
 }
 
-int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX])
+int glint_prim_record(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PRIM_RECORD_MAX])
 {
     out[0] = prim->kind;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
@@ -70,9 +71,9 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
         return 10 + (prim->face ? copy_face(out + 10, &geometry->faces[prim->face - 1]) : 0);
     }
     if (prim->kind == GLINT_PRIM_COMBINED)
-        return combined_place(geometry, &geometry->combined[prim->item], out);
+        return combined_record(geometry, &geometry->combined[prim->item], out);
     if (prim->kind == GLINT_PRIM_HULL)
-        return hull_place(geometry, prim, out);
+        return hull_record(geometry, prim, out);
     vec_copy(out + 1, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &geometry->solids[prim->item];
@@ -212,7 +213,7 @@ static glint_transform unit_map(const glint_shape_desc *desc)
 
 /// Computes the magnitudes for rounding errors: for the faces, and for the curved side, which is near 1 in each
 /// direction of the unit shape.
-static void bound_solid(const glint_prim *prim, const glint_placing *place, const glint_transform *unit,
+static void bound_solid(const glint_prim *prim, const glint_placing *placing, const glint_transform *unit,
                         glint_solid *solid, glint_face *faces)
 {
     double lower[3], upper[3], own[3];
@@ -220,12 +221,12 @@ static void bound_solid(const glint_prim *prim, const glint_placing *place, cons
     for (int c = 0; c < 3; c++)
         own[c] = ((fabs(unit->m[c][0]) + fabs(unit->m[c][1])) + fabs(unit->m[c][2])) + fabs(unit->m[c][3]);
     for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
-        glint_face_bound(&faces[i], place, lower, upper, own);
+        glint_face_bound(&faces[i], placing, lower, upper, own);
     solid->faces = faces;
-    solid->places = 1;
+    solid->magnitude = 1;
     for (int i = 0; i < 9; i++)
-        solid->places += 2 * fabs(solid->inverse[i / 3][i % 3]) *
-                         (fmax(fabs(lower[i % 3]), fabs(upper[i % 3])) + fabs(prim->center[i % 3]));
+        solid->magnitude += 2 * fabs(solid->inverse[i / 3][i % 3]) *
+                            (fmax(fabs(lower[i % 3]), fabs(upper[i % 3])) + fabs(prim->center[i % 3]));
 }
 
 double glint_linear_scale(double m[3][3])
@@ -238,9 +239,9 @@ double glint_linear_scale(double m[3][3])
 
 /// Makes a solid. unit: the map from the unit shape to its own space. faces: its faces, not bounded yet.
 static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *unit,
-                       const glint_placing *place, glint_face *faces)
+                       const glint_placing *placing, glint_face *faces)
 {
-    const glint_transform map = place->map ? glint_transform_product(place->map, unit) : *unit;
+    const glint_transform map = placing->map ? glint_transform_product(placing->map, unit) : *unit;
     double cofactors[3][3], scaled[3][3];
     prim->kind = GLINT_PRIM_SOLID;
     solid->form = form;
@@ -252,18 +253,18 @@ static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, co
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             solid->inverse[i][j] = cofactors[j][i] / determinant * scale;
-    bound_solid(prim, place, unit, solid, faces);
+    bound_solid(prim, placing, unit, solid, faces);
 }
 
-int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *place,
+int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *placing,
                      glint_face *faces)
 {
     const glint_transform unit = unit_map(desc);
     const glint_form form = form_of(desc);
     const int count = 2 * glint_slab_count(form);
     if (count > 0)
-        glint_solid_faces(desc, form, place, faces);
+        glint_solid_faces(desc, form, placing, faces);
     solid->tube = form == GLINT_FORM_TORUS ? desc->minor / desc->major : 0;
-    solid_init(prim, solid, form, &unit, place, faces);
+    solid_init(prim, solid, form, &unit, placing, faces);
     return count;
 }

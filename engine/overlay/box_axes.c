@@ -129,8 +129,8 @@ static bool is_seen(const box_axes *axes, int direction, int end)
     const glint_overlays_camera *c = &axes->layout->overlays->camera;
     if (axes->layout->desc->has_sides)
         return is_face_seen(axes, direction, end);
-    const double out = end ? 1 : -1, place = axes->layout->desc->box[end][direction];
-    return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - place) > 0;
+    const double out = end ? 1 : -1, position = axes->layout->desc->box[end][direction];
+    return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - position) > 0;
 }
 
 /// Clips an edge to the part in front of the eye; false: no part is.

@@ -67,7 +67,7 @@ static const char *find_widest(const glint_layout *layout, int *length)
     return found;
 }
 
-static void check_place(const check *c)
+static void check_position(const check *c)
 {
     const glint_layout *l = c->layout;
     const int sides[2] = { l->overlays->width, l->overlays->height };
@@ -110,7 +110,7 @@ glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, vo
         if (desc->has_box)
             continue;
         glint_layout_place(&layout, dpi);
-        check_place(&c);
+        check_position(&c);
     }
     if (!status)
         glint_letters_close(letters);

@@ -56,7 +56,7 @@ static glint_status check_drawn(const char *name, const char *text, size_t size,
     return status;
 }
 
-static glint_status check_place(const glint_overlay_desc *desc, glint_error *error)
+static glint_status check_position(const glint_overlay_desc *desc, glint_error *error)
 {
     glint_status status = GLINT_OK;
     for (int i = 0; i < 2 && !status; i++)
@@ -188,7 +188,7 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
     if (!status)
         status = check_text("name", desc->name, sizeof desc->name, error);
     if (!status)
-        status = check_place(desc, error);
+        status = check_position(desc, error);
     if (!status)
         status = glint_check_color("color", desc->color, error);
     if (!status && desc->has_background)

@@ -72,12 +72,13 @@ void glint_overlays_release(glint_overlays *overlays)
 
 #define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
 
-static glint_key place_key(const glint_overlay_desc *d, glint_key key)
+static glint_key position_key(const glint_overlay_desc *d, glint_key key)
 {
-    const double place[] = { d->kind,     d->at[0],   d->at[1],      d->has_position,   d->position[0], d->position[1],
-                             d->has_size, d->size,    d->has_margin, d->margin,         d->opacity,     d->has_length,
-                             d->length,   d->color[0], d->color[1],  d->color[2],       d->has_background };
-    ADD(key, place);
+    const double numbers[] = { d->kind,        d->at[0],         d->at[1],  d->has_position, d->position[0],
+                               d->position[1], d->has_size,      d->size,   d->has_margin,   d->margin,
+                               d->opacity,     d->has_length,    d->length, d->color[0],     d->color[1],
+                               d->color[2],    d->has_background };
+    ADD(key, numbers);
     ADD(key, d->background);
     return glint_key_add_string(key, d->text);
 }
@@ -103,7 +104,7 @@ glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
     for (size_t i = 0; i < overlays->count; i++) {
         const glint_overlay_desc *d = &overlays->of[i];
         const double bar[] = { d->map, d->low, d->high, d->orientation, (double)d->tick_count };
-        key = place_key(d, key);
+        key = position_key(d, key);
         if (d->kind == GLINT_OVERLAY_COLORBAR)
             key = glint_key_add(glint_key_add(key, bar, sizeof bar), d->ticks, d->tick_count * sizeof *d->ticks);
         if (d->kind == GLINT_OVERLAY_COLORBAR && d->is_log)

@@ -22,7 +22,7 @@ const glint_stage glint_stage_cast = {
     .name = "cast",
     .doc = "nearest object and distance of each ray",
     .called = has_surfaces,
-    .reads = GLINT_READS(PLACES) | GLINT_READS(CUT_OUTS),
+    .reads = GLINT_READS(POSITIONS) | GLINT_READS(CUT_OUTS),
 };
 
 const glint_stage glint_stage_surface = {
@@ -36,7 +36,7 @@ const glint_stage glint_stage_light = {
     .name = "light",
     .doc = "direction, distance and highlight angle of each light",
     .called = glint_plan_is_lit,
-    .reads = GLINT_READS(LIGHT_PLACES) | GLINT_READS(HIGHLIGHTS) | GLINT_READS(BUMPS),
+    .reads = GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(HIGHLIGHTS) | GLINT_READS(BUMPS),
     .per_light = true,
 };
 

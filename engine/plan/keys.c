@@ -29,7 +29,7 @@ static glint_key view_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-static glint_key light_place_key(const glint_plan_light *l, glint_key key)
+static glint_key light_position_key(const glint_plan_light *l, glint_key key)
 {
     const double numbers[] = { l->directional,     l->position[0],     l->position[1],
                                l->position[2],     l->coefficients[0], l->coefficients[1],
@@ -145,7 +145,7 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
     const glint_geometry *geometry = plan->geometry;
     if (which & GLINT_READS(VIEW))
         key = view_key(plan, key);
-    if (which & GLINT_READS(PLACES))
+    if (which & GLINT_READS(POSITIONS))
         GLINT_KEY_ADD(key, plan->where);
     if (which & GLINT_READS(LOOKS))
         GLINT_KEY_ADD(key, geometry->look);
@@ -158,8 +158,8 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
     if (which & GLINT_READS(HIGHLIGHTS))
         key = highlights_key(plan, key);
     for (uint32_t i = 0; i < plan->light_count; i++) {
-        if (which & GLINT_READS(LIGHT_PLACES))
-            key = light_place_key(&plan->lights[i], key);
+        if (which & GLINT_READS(LIGHT_POSITIONS))
+            key = light_position_key(&plan->lights[i], key);
         if (which & GLINT_READS(SHADOWS))
             GLINT_KEY_ADD(key, plan->lights[i].shadows);
         if (which & GLINT_READS(LIGHT_COLORS))
@@ -194,8 +194,8 @@ static glint_key vertex_key(const glint_plan *plan)
         key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
     return add_inputs(plan,
-                      GLINT_READS(PLACES) | GLINT_READS(LOOKS) | GLINT_READS(CUT_OUTS) | GLINT_READS(HIGHLIGHTS) |
-                          GLINT_READS(LIGHT_PLACES) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS) |
+                      GLINT_READS(POSITIONS) | GLINT_READS(LOOKS) | GLINT_READS(CUT_OUTS) | GLINT_READS(HIGHLIGHTS) |
+                          GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS) |
                           GLINT_READS(MATERIALS) | GLINT_READS(TINTS) | GLINT_READS_OWN(DERIVATIVE),
                       key);
 }
@@ -205,14 +205,14 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
 {
     const glint_key none = { 0 };
     const glint_key light_base =
-        add_inputs(plan, glint_stage_table[GLINT_STAGE_LIGHT]->reads & ~GLINT_READS(LIGHT_PLACES),
+        add_inputs(plan, glint_stage_table[GLINT_STAGE_LIGHT]->reads & ~GLINT_READS(LIGHT_POSITIONS),
                    plan->keys[GLINT_STAGE_SURFACE]);
     for (uint32_t i = 0; i < plan->light_count; i++) {
         glint_plan_light *light = &plan->lights[i];
-        light->key = light_place_key(light, light_base);
-        light->place_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
-        const uint32_t place = i % GLINT_LIGHT_CHUNK; // one call of shade sums the samples of a light
-        light->look_key = glint_key_add(light_color_key(light, light->place_key), &place, sizeof place);
+        light->key = light_position_key(light, light_base);
+        light->position_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
+        const uint32_t slot = i % GLINT_LIGHT_CHUNK; // one call of shade sums the samples of a light
+        light->look_key = glint_key_add(light_color_key(light, light->position_key), &slot, sizeof slot);
     }
     plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);
     plan->matte_keys = glint_alloc(plan->material_count, sizeof *plan->matte_keys);
@@ -225,10 +225,11 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
     plan->all_materials_key = add_inputs(
         plan, GLINT_READS(MATERIALS) | GLINT_READS(TINTS) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE), none);
     plan->all_lights_key =
-        add_inputs(plan, GLINT_READS(LIGHT_PLACES) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS), light_base);
+        add_inputs(plan, GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, GLINT_READS(BACKGROUND), none);
     plan->setting_key = add_inputs(
-        plan, GLINT_READS(VIEW) | GLINT_READS(LIGHT_PLACES) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS), none);
+        plan, GLINT_READS(VIEW) | GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS),
+        none);
     plan->output_key = add_inputs(
         plan, GLINT_READS_OWN(DEPTH_CUE) | GLINT_READS_OWN(DERIVATIVE) | GLINT_READS(PASSES) | GLINT_READS(TONE), none);
     return GLINT_OK;

@@ -32,9 +32,9 @@ static void round_point(const double square[2], double out[2])
 /// goes from the centre to the side, v along the side.
 static void polygon_point(const double square[2], uint32_t blades, double rotation, double out[2])
 {
-    const double place = square[0] * blades, side = fmin(floor(place), blades - 1.0);
+    const double position = square[0] * blades, side = fmin(floor(position), blades - 1.0);
     const double from = PI / 2 + rotation + 2 * PI * side / blades, to = from + 2 * PI / blades;
-    const double radius = sqrt(fmin(place - side, 1));
+    const double radius = sqrt(fmin(position - side, 1));
     out[0] = radius * ((1 - square[1]) * glint_cos(from) + square[1] * glint_cos(to));
     out[1] = radius * ((1 - square[1]) * glint_sin(from) + square[1] * glint_sin(to));
 }

@@ -181,13 +181,13 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
         out->coefficients[0] = 1;
     } else {
         const double *a = desc->attenuation;
-        const double *place = desc->kind == GLINT_LIGHT_POLYGON ? desc->vertices[0] : desc->position;
+        const double *position = desc->kind == GLINT_LIGHT_POLYGON ? desc->vertices[0] : desc->position;
         vec_copy(out->position, desc->position);
         if (desc->kind == GLINT_LIGHT_POLYGON)
             middle_of_corners(desc, out->position);
         vec_copy(out->coefficients, a);
         out->attenuated = a[0] != 1 || a[1] != 0 || a[2] != 0;
-        out->scale = distance_scale(place, geometry);
+        out->scale = distance_scale(position, geometry);
     }
     if (desc->kind == GLINT_LIGHT_SPOT)
         spot_init(out, desc);

@@ -19,13 +19,13 @@ struct glint_plan;
 /// Parts of the scene that several stages may read.
 typedef enum glint_scene_part {
     GLINT_PART_VIEW, ///< camera, picture size, samples
-    GLINT_PART_PLACES, ///< positions of the surfaces
+    GLINT_PART_POSITIONS, ///< positions of the surfaces
     GLINT_PART_LOOKS, ///< material and two-sidedness of each surface
     GLINT_PART_PATTERNS, ///< programs of materials, and the shapes' own spaces
     GLINT_PART_CUT_OUTS, ///< programs of holes, and materials that are invisible
     GLINT_PART_BUMPS, ///< programs that turn normals
     GLINT_PART_HIGHLIGHTS, ///< kind of highlight of each material
-    GLINT_PART_LIGHT_PLACES, ///< kind, position, fall-off
+    GLINT_PART_LIGHT_POSITIONS, ///< kind, position, fall-off
     GLINT_PART_SHADOWS, ///< lights that cast shadows
     GLINT_PART_LIGHT_COLORS,
     GLINT_PART_MATERIALS, ///< reflectances, exponents

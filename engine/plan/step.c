@@ -2,12 +2,13 @@
 #include "engine/plan/plan.h"
 
 /// Counts the rows of lights whose keys differ from the same rows of the plan before.
-static double changed_lights(const glint_plan *plan, const glint_plan *before, bool places)
+static double changed_lights(const glint_plan *plan, const glint_plan *before, bool positions)
 {
     double count = 0;
     for (uint32_t i = 0; i < plan->light_count; i++) {
         const glint_plan_light *light = &plan->lights[i], *old = i < before->light_count ? &before->lights[i] : NULL;
-        count += !old || !(places ? glint_key_equal(light->place_key, old->place_key) : glint_key_equal(light->key, old->key));
+        count += !old || !(positions ? glint_key_equal(light->position_key, old->position_key)
+                                     : glint_key_equal(light->key, old->key));
     }
     return count;
 }

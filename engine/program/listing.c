@@ -39,7 +39,7 @@ static void put_number(text *t, double number)
     put(t, " %s", shortest);
 }
 
-static void put_place(text *t, const glint_program_code *code, uint32_t row)
+static void put_slot(text *t, const glint_program_code *code, uint32_t row)
 {
     if (row >= GLINT_ROW_NUMBER)
         put_number(t, code->numbers[row - GLINT_ROW_NUMBER][0]);
@@ -64,12 +64,12 @@ char *glint_program_listing(const glint_program *program)
         if (in->op >= GLINT_OP_TEXEL)
             put(&t, " t%u", in->texture);
         for (uint32_t k = 0; k < info->operands; k++)
-            put_place(&t, code, in->in[k]);
+            put_slot(&t, code, in->in[k]);
         put(&t, "\n");
     }
     put(&t, "return");
     for (uint32_t k = 0; k < code->output_count; k++)
-        put_place(&t, code, code->outputs[k]);
+        put_slot(&t, code, code->outputs[k]);
     put(&t, "\n");
     if (t.failed)
         free(t.bytes);

@@ -279,7 +279,7 @@ static bool allocate(glint_program *program, const glint_builder *builder, uint3
 }
 
 /// Returns the row of a value. Enters numbers and inputs into the program at their first use.
-static uint16_t place_of(maker *m, glint_program *program, glint_value value)
+static uint16_t slot_of(maker *m, glint_program *program, glint_value value)
 {
     const glint_ssa_node *node = &m->nodes[value];
     if (glint_ssa_is_op(node))
@@ -301,7 +301,7 @@ static uint16_t place_of(maker *m, glint_program *program, glint_value value)
 }
 
 /// Returns the index of a builder's texture in the program's list.
-static uint16_t place_of_texture(glint_program *program, glint_texture *texture)
+static uint16_t slot_of_texture(glint_program *program, glint_texture *texture)
 {
     uint32_t i = 0;
     while (i < program->texture_count && program->textures[i] != texture)
@@ -328,15 +328,15 @@ static void write_code(maker *m, const glint_builder *builder, glint_program *pr
         to->operands = (uint8_t)info->operands;
         to->results = (uint8_t)info->results;
         if (to->op >= GLINT_OP_TEXEL)
-            to->texture = place_of_texture(program, builder->textures[m->nodes[i].texture]);
+            to->texture = slot_of_texture(program, builder->textures[m->nodes[i].texture]);
         for (uint32_t k = 0; k < info->operands; k++)
-            to->in[k] = place_of(m, program, m->nodes[i].operand[k]);
+            to->in[k] = slot_of(m, program, m->nodes[i].operand[k]);
         for (uint32_t k = 0; k < info->results; k++)
             to->out[k] = m->row[i + k];
     }
     code->output_count = (uint32_t)count;
     for (size_t k = 0; k < count; k++)
-        code->outputs[k] = place_of(m, program, outputs[k]);
+        code->outputs[k] = slot_of(m, program, outputs[k]);
 }
 
 static void make_keys(glint_program *program)

@@ -32,9 +32,9 @@ glint_status glint_program_slope(const glint_program *program, const glint_input
                                  glint_program **out, glint_error *error);
 
 /// The meaning of one number of a gradient: the derivative of a channel of light by an input.
-typedef struct glint_gradient_place {
+typedef struct glint_gradient_entry {
     uint32_t channel, input;
-} glint_gradient_place;
+} glint_gradient_entry;
 
 #define GLINT_GRADIENT_MAX (3 * GLINT_INPUT_COUNT)
 #define GLINT_GRADIENT_PART 8
@@ -45,7 +45,7 @@ _Static_assert(GLINT_GRADIENT_MAX <= GLINT_CODE_OUTPUTS_MAX, "a program may give
 /// listed.
 typedef struct glint_gradient {
     uint32_t count;
-    glint_gradient_place of[GLINT_GRADIENT_MAX];
+    glint_gradient_entry of[GLINT_GRADIENT_MAX];
     uint32_t each; ///< slopes for each program: all of them, or GLINT_GRADIENT_PART if one program cannot hold all
     glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_GRADIENT_PART - 1) / GLINT_GRADIENT_PART]; ///< owned, or NULL
     /// Owned: one program for each derivative, see glint_shader_forward; NULL: use the gradient. Set for each frame,

@@ -111,7 +111,7 @@ static void list_channel(glint_slope_maker *s, const glint_value *outputs, uint3
         if (node->op != GLINT_SSA_INPUT || s->given[i] == GLINT_SLOPE_NOTHING || !(inputs >> node->operand[0] & 1))
             continue;
         values[out->count] = s->given[i];
-        out->of[out->count++] = (glint_gradient_place) { c, node->operand[0] };
+        out->of[out->count++] = (glint_gradient_entry) { c, node->operand[0] };
     }
 }
 

@@ -24,7 +24,7 @@ typedef struct values {
     bool *second; ///< instructions that the second part runs
     uint32_t *maker; ///< the instruction that computes each value; NO_VALUE for an input
     uint32_t *last; ///< the last reader of each value in the part being written
-    uint16_t *place; ///< row or input of each value in the part being written
+    uint16_t *slot; ///< row or input of each value in the part being written
     glint_flow flow;
     uint32_t kept[GLINT_PROGRAM_OUTPUTS_MAX], kept_count;
 } values;
@@ -37,7 +37,7 @@ static void destroy(values *v)
     free(v->second);
     free(v->maker);
     free(v->last);
-    free(v->place);
+    free(v->slot);
     glint_flow_destroy(&v->flow);
 }
 
@@ -53,8 +53,8 @@ static bool begin(values *v, const glint_program_code *code)
     v->second = calloc(length, sizeof *v->second);
     v->maker = malloc(v->count * sizeof *v->maker);
     v->last = malloc(v->count * sizeof *v->last);
-    v->place = malloc(v->count * sizeof *v->place);
-    return v->operand && v->first && v->dynamic && v->second && v->maker && v->last && v->place &&
+    v->slot = malloc(v->count * sizeof *v->slot);
+    return v->operand && v->first && v->dynamic && v->second && v->maker && v->last && v->slot &&
            glint_flow_create(&v->flow, 2 + code->length + v->count,
                              GLINT_INPUT_COUNT + length * (GLINT_OPERANDS_MAX + 1) + v->count +
                                  GLINT_PROGRAM_OUTPUTS_MAX);
@@ -63,11 +63,11 @@ static bool begin(values *v, const glint_program_code *code)
 // ---- The graph ----------------------------------------------------------------------------------------------------
 
 /// Returns the value that is read; NO_VALUE: a number. holder: the value in each row.
-static uint32_t value_at(const uint32_t *holder, uint32_t place)
+static uint32_t value_at(const uint32_t *holder, uint32_t slot)
 {
-    if (place >= GLINT_ROW_NUMBER)
+    if (slot >= GLINT_ROW_NUMBER)
         return NO_VALUE;
-    return place < GLINT_ROW_INPUT ? holder[place] : place - GLINT_ROW_INPUT;
+    return slot < GLINT_ROW_INPUT ? holder[slot] : slot - GLINT_ROW_INPUT;
 }
 
 /// Numbers the values, and marks those that depend on the changed numbers. outputs: the values of the program's
@@ -240,11 +240,11 @@ static void place_results(values *v, uint32_t i, glint_instruction *to, bool *ta
 {
     for (uint32_t k = 0; k < to->operands; k++) {
         const uint32_t value = v->operand[i * GLINT_OPERANDS_MAX + k];
-        if (value != NO_VALUE && v->last[value] == i && v->place[value] < GLINT_ROW_INPUT)
-            taken[v->place[value]] = false;
+        if (value != NO_VALUE && v->last[value] == i && v->slot[value] < GLINT_ROW_INPUT)
+            taken[v->slot[value]] = false;
     }
     for (uint32_t k = 0; k < to->results; k++)
-        v->place[v->first[i] + k] = to->out[k] = take_row(taken, most);
+        v->slot[v->first[i] + k] = to->out[k] = take_row(taken, most);
     for (uint32_t k = 0; k < to->results; k++)
         if (v->last[v->first[i] + k] == NO_VALUE && to->out[k] < GLINT_PROGRAM_ROWS_MAX)
             taken[to->out[k]] = false;
@@ -266,7 +266,7 @@ static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_
         *to = v->code->instructions[i];
         for (uint32_t k = 0; k < to->operands; k++) {
             const uint32_t value = v->operand[i * GLINT_OPERANDS_MAX + k];
-            to->in[k] = value == NO_VALUE ? to->in[k] : v->place[value];
+            to->in[k] = value == NO_VALUE ? to->in[k] : v->slot[value];
         }
         place_results(v, i, to++, taken, &part->row_count);
         part->length++;
@@ -274,7 +274,7 @@ static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_
     part->output_count = count;
     for (uint32_t k = 0; k < count; k++)
         if (outputs[k] != NO_VALUE)
-            part->outputs[k] = v->place[outputs[k]];
+            part->outputs[k] = v->slot[outputs[k]];
     return true;
 }
 
@@ -284,11 +284,11 @@ static bool write_parts(values *v, const uint32_t *outputs, glint_split *split)
     for (uint32_t i = 0; i < v->code->length; i++)
         first[i] = !first[i];
     for (uint32_t i = 0; i < GLINT_INPUT_COUNT; i++)
-        v->place[i] = (uint16_t)(GLINT_ROW_INPUT + i);
+        v->slot[i] = (uint16_t)(GLINT_ROW_INPUT + i);
     if (!write_part(v, first, v->kept, v->kept_count, &split->first))
         return false;
     for (uint32_t k = 0; k < v->kept_count; k++) {
-        v->place[v->kept[k]] = (uint16_t)(GLINT_ROW_INPUT + k);
+        v->slot[v->kept[k]] = (uint16_t)(GLINT_ROW_INPUT + k);
         split->truths |= cost_of_value(v, v->kept[k]) == COST_OF_TRUTH ? 1u << k : 0;
     }
     memcpy(split->second.outputs, v->code->outputs, sizeof split->second.outputs); // for the numbers

@@ -29,47 +29,47 @@ typedef struct carry {
 // ---- Changes ----
 
 /// Returns the position of every primitive, by id. NULL: out of memory.
-static glint_cached_place *find_places(const glint_geometry *geometry, uint32_t count)
+static glint_cached_position *find_positions(const glint_geometry *geometry, uint32_t count)
 {
-    glint_cached_place *places = malloc((count + 1) * sizeof *places);
-    for (uint32_t id = 0; places && id < count; id++)
-        places[id].at = GLINT_MISS;
-    for (uint32_t i = 0; places && i < geometry->table.prim_count; i++) {
+    glint_cached_position *positions = malloc((count + 1) * sizeof *positions);
+    for (uint32_t id = 0; positions && id < count; id++)
+        positions[id].at = GLINT_MISS;
+    for (uint32_t i = 0; positions && i < geometry->table.prim_count; i++) {
         const glint_prim *prim = &geometry->prims[i];
-        glint_cached_place *place = &places[prim->id];
-        double numbers[GLINT_PLACE_MAX], lower[3], upper[3], half[3];
-        const size_t bytes = (size_t)glint_prim_place(geometry, prim, numbers) * sizeof *numbers;
-        place->key = glint_key_add((glint_key) { 0 }, numbers, bytes);
-        place->at = i;
-        place->radius = HUGE_VAL;
+        glint_cached_position *position = &positions[prim->id];
+        double numbers[GLINT_PRIM_RECORD_MAX], lower[3], upper[3], half[3];
+        const size_t bytes = (size_t)glint_prim_record(geometry, prim, numbers) * sizeof *numbers;
+        position->key = glint_key_add((glint_key) { 0 }, numbers, bytes);
+        position->at = i;
+        position->radius = HUGE_VAL;
         if (!glint_prim_bounded(prim))
             continue;
         glint_prim_bounds(geometry->solids, prim, lower, upper);
         for (int c = 0; c < 3; c++) {
-            place->center[c] = 0.5 * lower[c] + 0.5 * upper[c];
+            position->center[c] = 0.5 * lower[c] + 0.5 * upper[c];
             half[c] = 0.5 * upper[c] - 0.5 * lower[c];
         }
-        place->radius = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : sqrt(vec_dot(half, half));
+        position->radius = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : sqrt(vec_dot(half, half));
     }
-    for (uint32_t i = 0; places && i < geometry->member_count; i++) // the key of a combined solid includes its parts
-        places[geometry->members[i].id] = (glint_cached_place) { .at = geometry->table.prim_count + i };
-    return places;
+    for (uint32_t i = 0; positions && i < geometry->member_count; i++) // the key of a combined solid includes its parts
+        positions[geometry->members[i].id] = (glint_cached_position) { .at = geometry->table.prim_count + i };
+    return positions;
 }
 
-static bool add_ball(carry *c, const glint_cached_place *place)
+static bool add_ball(carry *c, const glint_cached_position *position)
 {
-    if (place->at == GLINT_MISS)
+    if (position->at == GLINT_MISS)
         return true;
-    if (!(place->radius < HUGE_VAL) || c->ball_count == 2 * CARRY_CHANGES)
+    if (!(position->radius < HUGE_VAL) || c->ball_count == 2 * CARRY_CHANGES)
         return false;
     glint_ball *b = &c->balls[c->ball_count++];
-    vec_copy(b->center, place->center);
-    b->radius = place->radius;
+    vec_copy(b->center, position->center);
+    b->radius = position->radius;
     return true;
 }
 
 /// Lists the changes. Returns false if there are too many.
-static bool find_changes(carry *c, const glint_cached_place *was, const glint_cached_place *is, uint32_t count)
+static bool find_changes(carry *c, const glint_cached_position *was, const glint_cached_position *is, uint32_t count)
 {
     for (uint32_t id = 0; id < count; id++) {
         const bool both = was[id].at != GLINT_MISS && is[id].at != GLINT_MISS;
@@ -90,9 +90,9 @@ static void renew(glint_key *key, glint_key before, glint_key now)
 }
 
 /// Returns the new index of a primitive; GLINT_MISS, and the values of lanes outside the picture, stay as they are.
-static uint32_t moved(const carry *c, uint32_t place)
+static uint32_t moved(const carry *c, uint32_t index)
 {
-    return c->moved_to && place < c->reuse->place_count ? c->moved_to[place] : place;
+    return c->moved_to && index < c->reuse->position_count ? c->moved_to[index] : index;
 }
 
 static void carry_hits(const carry *c, glint_cached_tile *tile)
@@ -126,7 +126,7 @@ static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed, ui
         renew(&light->light, was->key, is->key);
         if (open) {
             renew(&light->occlude, was->key, is->key);
-            renew(&light->place, was->place_key, is->place_key);
+            renew(&light->position, was->position_key, is->position_key);
         }
         all = all && open;
     }
@@ -168,7 +168,8 @@ static void carry_all(const carry *c)
 
 /// Computes the new index of each primitive of the last frame. Returns false when out of memory. *moved_to is NULL if
 /// none moved.
-static bool find_moves(const glint_cached_place *was, const glint_cached_place *is, uint32_t count, uint32_t **moved_to)
+static bool find_moves(const glint_cached_position *was, const glint_cached_position *is, uint32_t count,
+                       uint32_t **moved_to)
 {
     bool same = true;
     for (uint32_t id = 0; id < count; id++)
@@ -181,9 +182,9 @@ static bool find_moves(const glint_cached_place *was, const glint_cached_place *
 }
 
 /// Retains results across a change. Returns false if there are too many changes.
-static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count)
+static bool carry_changes(carry *c, const glint_cached_position *is, uint32_t count)
 {
-    const glint_cached_place *was = c->reuse->places;
+    const glint_cached_position *was = c->reuse->positions;
     glint_plan_twin twin;
     uint32_t *moved_to = NULL;
     if (!find_changes(c, was, is, count))
@@ -205,7 +206,7 @@ static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count
 /// move.
 static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
 {
-    if (count * sizeof(glint_cached_place) >= reuse->budget / 64)
+    if (count * sizeof(glint_cached_position) >= reuse->budget / 64)
         return false;
     if (count > CARRY_AT_ONCE && glint_key_equal(reuse->where, (glint_key) { 0 }))
         return false;
@@ -232,19 +233,20 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
     if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
-    glint_cached_place *places = is_worth_finding(reuse, count) ? find_places(geometry, count) : NULL;
-    const bool comparable = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
+    glint_cached_position *positions = is_worth_finding(reuse, count) ? find_positions(geometry, count) : NULL;
+    const bool comparable = plain && reuse->positions && positions && reuse->position_count == count &&
+                            reuse->tile_count > 0 &&
                             reuse->scale == geometry->table.scale && // with another scale, other numbers underflow
                             reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
     if (comparable && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
-        if (carry_changes(&c, places, count))
+        if (carry_changes(&c, positions, count))
             reuse->carry_pause = 0;
         else
             wait_longer(reuse);
     }
-    free(reuse->places);
-    reuse->places = places;
-    reuse->place_count = count;
+    free(reuse->positions);
+    reuse->positions = positions;
+    reuse->position_count = count;
     reuse->where = geometry->where;
     reuse->scale = geometry->table.scale;
 }

@@ -102,7 +102,7 @@ static void forget_lights(glint_reuse *reuse)
         glint_earlier_set *set = &reuse->earlier->sets[s];
         memset(set->held, 0, sizeof set->held);
         for (size_t i = 0; set->lights && i < reuse->tile_count * reuse->light_count; i++)
-            set->lights[i].light = set->lights[i].facet = set->lights[i].occlude = set->lights[i].place = none;
+            set->lights[i].light = set->lights[i].facet = set->lights[i].occlude = set->lights[i].position = none;
     }
     memset(reuse->earlier->lights, 0, sizeof reuse->earlier->lights);
     memset(reuse->light_recurs, 0, sizeof reuse->light_recurs);

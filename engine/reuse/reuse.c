@@ -40,7 +40,7 @@ void glint_reuse_destroy(glint_reuse *reuse)
 {
     glint_reuse_clear(reuse);
     glint_splits_clear(&reuse->splits);
-    free(reuse->places);
+    free(reuse->positions);
     pthread_mutex_destroy(&reuse->lock);
 }
 
@@ -145,7 +145,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile
     key = materials_key(reuse, tile, plan, key);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_cached_light *light = &tile->lights[i];
-        if (!glint_key_equal(light->place, plan->lights[i].place_key))
+        if (!glint_key_equal(light->position, plan->lights[i].position_key))
             return (glint_key) { 0 };
         if (light->reaches)
             key = glint_key_mix(key, plan->lights[i].look_key);

@@ -32,7 +32,7 @@ typedef struct glint_cached_light {
     float *visible; ///< a separate block: visible share with caps, with the attenuation
     glint_key facet; ///< of the following arrays
     float *sine2, *schlick; ///< a separate block, sine2 first
-    glint_key place; ///< the light's position and shadows when the following was computed; all zero: never
+    glint_key position; ///< the light's position and shadows when the following was computed; all zero: never
     bool reaches; ///< the light reaches some lane
     float brightest; ///< the largest log2_specular of lit lanes, in shadow or not
 } glint_cached_light;
@@ -66,11 +66,11 @@ typedef struct glint_cached_tile {
 } glint_cached_tile;
 
 /// The position of a primitive in the last frame.
-typedef struct glint_cached_place {
+typedef struct glint_cached_position {
     glint_key key; ///< hash of its position
     double center[3], radius; ///< bounding ball; infinite radius: unbounded
     uint32_t at; ///< index in the geometry's table; GLINT_MISS: it was equal to another primitive
-} glint_cached_place;
+} glint_cached_position;
 
 #define GLINT_EARLIER_MAX 64 ///< largest number of stored earlier results for each light
 #define GLINT_EARLIER_TILES 8 ///< the same for whole tiles
@@ -124,8 +124,8 @@ typedef struct glint_reuse {
     glint_earlier *earlier; ///< owned; NULL: nothing
     glint_splits splits;
     glint_key where; ///< hash of the positions of the last frame's surfaces
-    glint_cached_place *places; ///< the positions, by id; owned; NULL: there were too many
-    uint32_t place_count;
+    glint_cached_position *positions; ///< the positions, by id; owned; NULL: there were too many
+    uint32_t position_count;
     /// Number of coming frames that do not record positions; length of the last such pause
     uint32_t carry_wait, carry_pause;
     double scale; ///< of the geometry's table

@@ -33,7 +33,7 @@ void glint_splits_clear(glint_splits *splits)
 static glint_key like_of(const glint_plan_pattern *own, int field)
 {
     const glint_program *program = own->program[field];
-    const glint_key parts[] = { own->numbers, own->places };
+    const glint_key parts[] = { own->numbers, own->spaces };
     return program ? glint_key_add(program->structure, parts, sizeof parts) : none;
 }
 
@@ -147,13 +147,14 @@ static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint3
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
 /// Assigns positions to a material's cached values.
-static void place(glint_splits *splits, glint_split_material *m, const glint_plan_patterns *patterns, uint32_t made)
+static void assign_slots(glint_splits *splits, glint_split_material *m, const glint_plan_patterns *patterns,
+                         uint32_t made)
 {
     uint32_t numbers = 0, truths = 0;
     for (int field = 0; field < GLINT_FIELD_PLANES && !m->whole; field++) {
         glint_split_field *f = &m->of[field];
         for (uint32_t k = 0; f->split && k < f->split->first.output_count; k++)
-            f->place[k] = f->split->truths >> k & 1 ? truths++ : numbers++;
+            f->slot[k] = f->split->truths >> k & 1 ? truths++ : numbers++;
     }
     splits->numbers = larger(splits->numbers, numbers);
     splits->truths = larger(splits->truths, truths);
@@ -206,6 +207,6 @@ void glint_splits_begin(glint_splits *splits, const glint_plan *plan)
     }
     splits->numbers = splits->planes = splits->truths = 0;
     for (uint32_t i = 0; any && i < plan->material_count; i++)
-        place(splits, &splits->of[i], patterns, patterns->of[i].made);
+        assign_slots(splits, &splits->of[i], patterns, patterns->of[i].made);
     splits->key = any ? kept_key(splits) : none;
 }

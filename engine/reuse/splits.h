@@ -15,7 +15,7 @@ typedef struct glint_split_field {
     bool *changed, *now; ///< owned: numbers that have ever changed; numbers that changed in this frame
     glint_split *split; ///< owned; NULL: none of its numbers changes
     /// Positions of the cached values, among the numbers or booleans of a sample
-    uint32_t place[GLINT_PROGRAM_OUTPUTS_MAX];
+    uint32_t slot[GLINT_PROGRAM_OUTPUTS_MAX];
 } glint_split_field;
 
 typedef struct glint_split_material {

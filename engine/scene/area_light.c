@@ -315,11 +315,11 @@ static void square_point(uint32_t i, uint32_t samples, bool cone, const double s
 }
 
 /// Computes the part of a cone's sample that does not depend on the point.
-static void cone_point(const double square[2], double place[3])
+static void cone_point(const double square[2], double position[3])
 {
-    place[0] = square[0];
-    place[1] = glint_cos(2 * PI * square[1]);
-    place[2] = glint_sin(2 * PI * square[1]);
+    position[0] = square[0];
+    position[1] = glint_cos(2 * PI * square[1]);
+    position[2] = glint_sin(2 * PI * square[1]);
 }
 
 void glint_light_sample_fill(const glint_light_desc *desc, uint32_t sets, double seed, glint_light_sample *out)

@@ -20,7 +20,7 @@ static const char *const shadows[] = { "rays", "hard", "caps", NULL };
 #define SLOPES .takes = GLINT_TAKES_VARIABLE
 #define NONZERO(field, text) { GLINT_ROW(field, DIRECTION), .required = true, .initial = { 0, -1, 0 }, .doc = text }
 #define AIM(text) { GLINT_ROW(direction, DIRECTION), .required = true, .initial = { 0, -1, 0 }, SLOPES, .doc = text }
-#define PLACE(text) { GLINT_ROW(position, VECTOR), .required = true, SLOPES, .unit = "world units", .doc = text }
+#define POSITION(text) { GLINT_ROW(position, VECTOR), .required = true, SLOPES, .unit = "world units", .doc = text }
 #define RADIUS(text) { GLINT_ROW(radius, NUMBER), .required = true, GLINT_AT_LEAST_0, .initial = { 1 }, .unit = "world units", .doc = text }
 
 // clang-format off
@@ -63,7 +63,7 @@ static const char *const shadows[] = { "rays", "hard", "caps", NULL };
 
 static const glint_object_field point_fields[] = {
     EVERY_LIGHT(GLINT_TAKES_VARIABLE),
-    PLACE("position of the light"),
+    POSITION("position of the light"),
     { .name = NULL },
 };
 
@@ -75,7 +75,7 @@ static const glint_object_field directional_fields[] = {
 
 static const glint_object_field spot_fields[] = {
     EVERY_LIGHT(GLINT_TAKES_VARIABLE),
-    PLACE("position of the light"),
+    POSITION("position of the light"),
     AIM("direction of the axis; not zero, need not be a unit vector"),
     { GLINT_NAMED("inner", inner_rad, ANGLE), .required = true, .high = PI, .initial = { 20 * PI / 180 }, SLOPES, .unit = "degrees",
       .doc = "half angle of the fully lit cone, 0 <= inner <= outer" },
@@ -88,7 +88,7 @@ static const glint_object_field spot_fields[] = {
 
 static const glint_object_field disk_fields[] = {
     EVERY_AREA_LIGHT,
-    PLACE("its centre"),
+    POSITION("its centre"),
     NONZERO(normal, "points to the side that shines; not zero, need not be a unit vector"),
     RADIUS(">= 0; 0 is a point"),
     { .name = NULL },
@@ -106,7 +106,7 @@ _Static_assert(offsetof(DESC, vertex_count) == offsetof(DESC, vertices) + sizeof
 
 static const glint_object_field sphere_fields[] = {
     EVERY_AREA_LIGHT,
-    PLACE("its centre"),
+    POSITION("its centre"),
     RADIUS(">= 0; 0 is a point light, bit for bit"),
     { .name = NULL },
 };

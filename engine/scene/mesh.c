@@ -50,9 +50,9 @@ typedef struct builder {
     glint_error *error;
 } builder;
 
-static const double *vertex(const builder *b, uint32_t place)
+static const double *vertex(const builder *b, uint32_t corner)
 {
-    return b->desc->vertices + 3 * (size_t)b->face.corners[place];
+    return b->desc->vertices + 3 * (size_t)b->face.corners[corner];
 }
 
 static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
@@ -110,15 +110,15 @@ static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, u
         mesh->faces[mesh->triangle_count] = (uint32_t)(b->number - 1);
     if (b->index)
         b->index[mesh->triangle_count] = material_of(b);
-    const uint32_t place[3] = { i, j, k };
+    const uint32_t corner[3] = { i, j, k };
     for (int c = 0; c < 3; c++) {
-        mesh->triangles[mesh->triangle_count][c] = b->face.corners[place[c]];
+        mesh->triangles[mesh->triangle_count][c] = b->face.corners[corner[c]];
         if (mesh->triangle_normals)
             mesh->triangle_normals[mesh->triangle_count][c] =
-                number_or(b->desc->normal_corners[first_corner + place[c]], GLINT_NO_NORMAL, b->desc->normal_count);
+                number_or(b->desc->normal_corners[first_corner + corner[c]], GLINT_NO_NORMAL, b->desc->normal_count);
         if (mesh->triangle_uv)
             mesh->triangle_uv[mesh->triangle_count][c] =
-                number_or(b->desc->uv_corners[first_corner + place[c]], GLINT_NO_UV, b->desc->uv_count);
+                number_or(b->desc->uv_corners[first_corner + corner[c]], GLINT_NO_UV, b->desc->uv_count);
     }
     mesh->triangle_count++;
     return GLINT_OK;
@@ -182,8 +182,8 @@ static glint_status cut_ears(builder *b, size_t first_corner)
         return cut_fan(b, first_corner);
     }
     for (size_t i = 0; i < b->ears.triangle_count && !status; i++) {
-        const uint32_t *places = b->ears.triangles[i];
-        status = keep_triangle(b, first_corner, places[0], places[1], places[2]);
+        const uint32_t *corners = b->ears.triangles[i];
+        status = keep_triangle(b, first_corner, corners[0], corners[1], corners[2]);
     }
     return status;
 }

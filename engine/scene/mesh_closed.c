@@ -16,7 +16,7 @@ typedef struct edge {
 
 typedef struct seams {
     const glint_mesh *mesh;
-    uint32_t *place; ///< for each vertex, the first vertex at the same position
+    uint32_t *first_at; ///< for each vertex, the first vertex at the same position
     edge *edges; ///< hash table
     size_t slots; ///< a power of two
 } seams;
@@ -29,7 +29,7 @@ static size_t power_above(size_t count)
     return size;
 }
 
-static bool find_vertex_places(seams *s)
+static bool find_first_vertices(seams *s)
 {
     const size_t count = s->mesh->vertex_count, size = power_above(2 * count);
     uint32_t *slots = calloc(size, sizeof *slots); // number + 1
@@ -48,7 +48,7 @@ static bool find_vertex_places(seams *s)
         }
         if (!slots[slot])
             slots[slot] = (uint32_t)i + 1;
-        s->place[i] = slots[slot] - 1;
+        s->first_at[i] = slots[slot] - 1;
     }
     free(slots);
     return true;
@@ -70,8 +70,8 @@ static edge *find_edge(const seams *s, uint32_t a, uint32_t b)
 static bool edge_ends(const seams *s, size_t triangle, int j, uint32_t ends[2])
 {
     const uint32_t *at = s->mesh->triangles[triangle];
-    ends[0] = s->place[at[j]];
-    ends[1] = s->place[at[(j + 1) % 3]];
+    ends[0] = s->first_at[at[j]];
+    ends[1] = s->first_at[at[(j + 1) % 3]];
     return ends[0] != ends[1];
 }
 
@@ -134,16 +134,16 @@ glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error)
     if (mesh->closure.computed)
         return GLINT_OK;
     seams s = { .mesh = mesh, .slots = power_above(4 * mesh->triangle_count) };
-    s.place = malloc(mesh->vertex_count * sizeof *s.place);
+    s.first_at = malloc(mesh->vertex_count * sizeof *s.first_at);
     s.edges = malloc(s.slots * sizeof *s.edges);
-    const bool allocated = s.place && s.edges && find_vertex_places(&s);
+    const bool allocated = s.first_at && s.edges && find_first_vertices(&s);
     if (allocated) {
         count_edges(&s);
         find_open_edge(&s, &mesh->closure);
         mesh->closure.inverted = volume_of(mesh) < 0;
         mesh->closure.computed = true;
     }
-    free(s.place);
+    free(s.first_at);
     free(s.edges);
     return allocated ? GLINT_OK : glint_fail_nomem(error);
 }

@@ -66,7 +66,7 @@ static glint_status reserve(glint_ears *ears, size_t count, glint_error *error)
     return glint_fail_nomem(error);
 }
 
-static const double *place(const glint_polygon *polygon, uint32_t i)
+static const double *position(const glint_polygon *polygon, uint32_t i)
 {
     return polygon->vertices + 3 * (size_t)polygon->corners[i];
 }
@@ -74,8 +74,8 @@ static const double *place(const glint_polygon *polygon, uint32_t i)
 void glint_polygon_cross(const glint_polygon *polygon, uint32_t i, uint32_t j, uint32_t k, double out[3])
 {
     double f[3], g[3];
-    vec_sub(f, place(polygon, j), place(polygon, i));
-    vec_sub(g, place(polygon, k), place(polygon, i));
+    vec_sub(f, position(polygon, j), position(polygon, i));
+    vec_sub(g, position(polygon, k), position(polygon, i));
     const double largest = fmax(vec_max_abs(f), vec_max_abs(g));
     const double scale = largest > 0 ? power_of_two_scale(largest) : 1;
     vec_scale(f, f, scale);
@@ -96,12 +96,12 @@ static void flatten(const cutting *c)
     vec_normalize(axes[0], f);
     vec_cross(axes[1], normal, axes[0]);
     for (uint32_t i = 0; i < polygon->size; i++) {
-        vec_sub(f, place(polygon, i), place(polygon, 0));
+        vec_sub(f, position(polygon, i), position(polygon, 0));
         largest = fmax(largest, vec_max_abs(f));
     }
     const double scale = power_of_two_scale(largest);
     for (uint32_t i = 0; i < polygon->size; i++) {
-        vec_sub(f, place(polygon, i), place(polygon, 0));
+        vec_sub(f, position(polygon, i), position(polygon, 0));
         vec_scale(f, f, scale);
         for (int axis = 0; axis < 2; axis++)
             c->ears->corners[i].at[axis] = vec_dot(f, axes[axis]);

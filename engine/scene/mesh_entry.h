@@ -27,7 +27,7 @@ typedef struct glint_mesh_entry {
     double rough, metal; ///< Pr, Pm; below 0: none
     bool lacks_uv; ///< one of its faces has a corner without texture coordinates
     char *map[GLINT_MAP_COUNT]; ///< paths of pictures; NULL: none
-    glint_mesh_map place[GLINT_MAP_COUNT]; ///< mapping of each picture
+    glint_mesh_map mapping[GLINT_MAP_COUNT]; ///< mapping of each picture
     double height; ///< -bm of the bump map, world units; 0: none, or not usable
     char bm[GLINT_NAME_SIZE]; ///< the file's text for -bm; "": none
 } glint_mesh_entry;

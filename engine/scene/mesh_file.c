@@ -15,12 +15,12 @@ static void report_notes(const glint_mesh_reader *r)
 {
     for (int kind = 0; kind < GLINT_MESH_NOTE_COUNT; kind++) {
         const glint_mesh_note *note = &r->notes[kind];
-        char place[256], more[32] = "";
-        snprintf(place, sizeof place, note->line ? "%.220s:%zu" : "%.220s", r->text.path, note->line);
+        char where[256], more[32] = "";
+        snprintf(where, sizeof where, note->line ? "%.220s:%zu" : "%.220s", r->text.path, note->line);
         if (note->count > 1)
             snprintf(more, sizeof more, ", and %zu more", note->count - 1);
         if (note->count)
-            glint_mesh_warn(r->desc, place, "%s%s", note->first, more);
+            glint_mesh_warn(r->desc, where, "%s%s", note->first, more);
     }
 }
 
@@ -137,7 +137,7 @@ static void release(glint_mesh_reader *r)
         glint_material_release(((glint_material **)r->materials.items)[i]);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]->items);
-    free(r->places.slots);
+    free(r->vertex_set.slots);
     glint_mesh_library_free(r->library);
     glint_mesh_text_close(&r->text);
 }

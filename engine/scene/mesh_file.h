@@ -128,7 +128,7 @@ typedef struct glint_mesh_reader {
         size_t index, line;
     } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest index that was not defined yet, from 0, and its line; 0: none
     glint_mesh_array materials; ///< materials of `colors`: glint_material *, owned; empty: the materials of `desc`
-    glint_mesh_set places; ///< .stl: vertices by position
+    glint_mesh_set vertex_set; ///< .stl: vertices by position
     bool has_normals;
     glint_mesh_note notes[GLINT_MESH_NOTE_COUNT];
     glint_error *error;

@@ -91,7 +91,7 @@ glint_status glint_mesh_library_begin(glint_mesh_library *library, const char *n
                               .rough = -1,
                               .metal = -1 };
     for (int kind = 0; kind < GLINT_MAP_COUNT; kind++)
-        made.place[kind].scale[0] = made.place[kind].scale[1] = 1;
+        made.mapping[kind].scale[0] = made.mapping[kind].scale[1] = 1;
     glint_mesh_copy_name(made.desc.name, name);
     glint_status status =
         glint_mesh_find(&library->known_set, &library->known, &made, sizeof(glint_key), number, error);
@@ -111,7 +111,7 @@ static const char *const map_instead[GLINT_MAP_COUNT] = { "its Kd", "its Ks", "i
 static glint_status find_picture(glint_mesh_library *library, const glint_mesh_reader *reader,
                                  const glint_mesh_entry *e, glint_mesh_map_kind kind, glint_texture **out)
 {
-    const bool how[2] = { e->place[kind].clamp, kind >= GLINT_MAP_D };
+    const bool how[2] = { e->mapping[kind].clamp, kind >= GLINT_MAP_D };
     uint32_t number;
     glint_texture_desc desc = glint_texture_desc_default();
     glint_error inner;
@@ -126,7 +126,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
     if (library->pictures.count > before) {
         desc.path = e->map[kind];
         desc.linear = kind >= GLINT_MAP_D; // these maps hold numbers, not colours
-        desc.wrap = e->place[kind].clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
+        desc.wrap = e->mapping[kind].clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
         if (reader->desc->reads)
             reader->desc->reads(reader->desc->context, e->map[kind]);
         status = glint_texture_create(&desc, &found->texture, &inner);
@@ -223,7 +223,7 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
     }
     if (!status && texture)
         status =
-            glint_mesh_paint(texture, &e->place[kind], factor[kind], kind >= GLINT_MAP_D ? 1 : 3, out, reader->error);
+            glint_mesh_paint(texture, &e->mapping[kind], factor[kind], kind >= GLINT_MAP_D ? 1 : 3, out, reader->error);
     return status;
 }
 

@@ -103,7 +103,7 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
 
 /// The values of a map's options.
 typedef struct map_options {
-    glint_mesh_map place;
+    glint_mesh_map mapping;
     double height; ///< -bm
     char bm[GLINT_NAME_SIZE]; ///< the file's text for -bm
 } map_options;
@@ -115,13 +115,13 @@ static const char *read_options(const glint_mesh_text *text, const char *at, map
         const char *option = at;
         double mm[2] = { 0, 1 };
         at = skip_option(text, at, words,
-                         glint_mesh_is_word(at, "-o")    ? o->place.offset
-                         : glint_mesh_is_word(at, "-s")  ? o->place.scale
+                         glint_mesh_is_word(at, "-o")    ? o->mapping.offset
+                         : glint_mesh_is_word(at, "-s")  ? o->mapping.scale
                          : glint_mesh_is_word(at, "-bm") ? &o->height
                          : glint_mesh_is_word(at, "-mm") ? mm
                                                          : NULL);
         if (glint_mesh_is_word(option, "-clamp"))
-            o->place.clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
+            o->mapping.clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
         if (glint_mesh_is_word(option, "-bm")) {
             glint_mesh_copy_name(o->bm, glint_skip_blanks(option + 3));
             o->bm[strcspn(o->bm, " \t")] = 0;
@@ -145,7 +145,7 @@ static const char *find_name_end(const char *at)
 static glint_status read_map(const glint_mesh_text *text, const char *at, glint_mesh_map_kind kind,
                              glint_mesh_entry *to, ignored_parts *ignored)
 {
-    map_options o = { .place = to->place[kind] };
+    map_options o = { .mapping = to->mapping[kind] };
     at = read_options(text, glint_skip_blanks(at), &o, ignored);
     const char *end = find_name_end(at);
     read_options(text, glint_skip_blanks(end), &o, ignored);
@@ -161,7 +161,7 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, glint_
     }
     free(to->map[kind]);
     to->map[kind] = path;
-    to->place[kind] = o.place;
+    to->mapping[kind] = o.mapping;
     if (kind == GLINT_MAP_BUMP) {
         to->height = o.height;
         memcpy(to->bm, o.bm, sizeof o.bm);

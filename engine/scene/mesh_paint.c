@@ -5,7 +5,7 @@
 #include <math.h>
 
 /// Makes a texture coordinate, multiplied by the scale of the map, plus its offset.
-static glint_value place_of(glint_maker *p, const glint_mesh_map *map, int axis)
+static glint_value coord_of(glint_maker *p, const glint_mesh_map *map, int axis)
 {
     const glint_value at = glint_maker_input(p, axis ? GLINT_INPUT_UV_V : GLINT_INPUT_UV_U);
     return glint_maker_with(p, GLINT_OP_ADD, glint_maker_with(p, GLINT_OP_MUL, at, map->scale[axis]), map->offset[axis]);
@@ -17,7 +17,7 @@ glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map
     glint_maker p = { .error = error };
     glint_value color[4] = { 0 };
     p.status = glint_builder_create(GLINT_PROGRAM_PATTERN, &p.builder, error);
-    const glint_value u = place_of(&p, map, 0), v = place_of(&p, map, 1);
+    const glint_value u = coord_of(&p, map, 0), v = coord_of(&p, map, 1);
     const double most = fmax(fabs(map->scale[0]), fabs(map->scale[1]));
     const glint_value width = glint_maker_with(&p, GLINT_OP_MUL, glint_maker_input(&p, GLINT_INPUT_UV_FOOTPRINT), most);
     if (!p.status)

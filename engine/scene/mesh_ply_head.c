@@ -208,7 +208,7 @@ static void find_colors(const glint_mesh_reader *r, glint_ply_head *h)
 /// Checks that the elements make a mesh, and that the file is long enough for their rows.
 static glint_status check_head(const glint_mesh_reader *r, const glint_ply_head *h)
 {
-    bool places = false, faces = false, strips = false;
+    bool positions = false, faces = false, strips = false;
     for (uint32_t i = 0; i < h->element_count; i++) {
         const glint_ply_element *e = &h->elements[i];
         uint64_t least = 0;
@@ -221,12 +221,12 @@ static glint_status check_head(const glint_mesh_reader *r, const glint_ply_head 
             return glint_fail(r->error, GLINT_ERR_FORMAT,
                               "%s: element %s: no more than the file has room for expected, got %llu", r->text.path,
                               e->name, (unsigned long long)e->count);
-        places = places || (glint_ply_has_role(e, GLINT_PLY_X) && glint_ply_has_role(e, GLINT_PLY_Y) &&
-                            glint_ply_has_role(e, GLINT_PLY_Z));
+        positions = positions || (glint_ply_has_role(e, GLINT_PLY_X) && glint_ply_has_role(e, GLINT_PLY_Y) &&
+                                  glint_ply_has_role(e, GLINT_PLY_Z));
         faces = faces || glint_ply_has_role(e, GLINT_PLY_VERTEX_NUMBERS);
         strips = strips || glint_ply_has_role(e, GLINT_PLY_STRIP);
     }
-    if (!places)
+    if (!positions)
         return glint_fail(r->error, GLINT_ERR_FORMAT, "%s: an element vertex with x, y and z expected", r->text.path);
     if ((!faces && !strips) || h->face_count == 0)
         return glint_fail(r->error, GLINT_ERR_FORMAT,

@@ -18,7 +18,7 @@ static glint_status add_triangle(glint_mesh_reader *r, double corners[3][3])
     for (int i = 0; i < 3 && !status; i++) {
         for (int c = 0; c < 3; c++)
             corners[i][c] += 0.0; // -0 and 0 are the same position
-        status = glint_mesh_find(&r->places, &r->vertices, corners[i], sizeof corners[i], &number, r->error);
+        status = glint_mesh_find(&r->vertex_set, &r->vertices, corners[i], sizeof corners[i], &number, r->error);
         if (!status)
             status = glint_mesh_append(&r->corners, &number, r->error);
     }
@@ -58,7 +58,7 @@ static const char *const WORDS[] = { "facet", "outer", "vertex", "vertex", "vert
 
 /// The position within the structure of a text.
 typedef struct state {
-    int place; ///< 0 .. 6, within a facet; 0 also between facets
+    int step; ///< 0 .. 6, within a facet; 0 also between facets
     bool ended; ///< the last solid has ended
     double corners[3][3];
 } state;
@@ -67,9 +67,9 @@ typedef struct state {
 static glint_status read_statement(glint_mesh_reader *r, const char *at, state *s)
 {
     char expected[32];
-    const int place = s->place;
+    const int step = s->step;
     const bool ends = glint_mesh_is_word(at, "endsolid");
-    if (place == 0 && (ends || glint_mesh_is_word(at, "solid"))) {
+    if (step == 0 && (ends || glint_mesh_is_word(at, "solid"))) {
         s->ended = ends;
         return GLINT_OK;
     }
@@ -77,25 +77,25 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
         glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, r->text.number, "this line, after the solid, is ignored");
         return GLINT_OK;
     }
-    if (place == 0 && (strchr("#;/", *at) || glint_mesh_is_word(at, "color"))) {
+    if (step == 0 && (strchr("#;/", *at) || glint_mesh_is_word(at, "color"))) {
         glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number, "this line, between facets, is ignored");
         return GLINT_OK;
     }
-    snprintf(expected, sizeof expected, place ? "%s" : "%s or endsolid", WORDS[place]);
-    if (!glint_mesh_is_word(at, WORDS[place]))
+    snprintf(expected, sizeof expected, step ? "%s" : "%s or endsolid", WORDS[step]);
+    if (!glint_mesh_is_word(at, WORDS[step]))
         return glint_mesh_refuse(&r->text, expected, at);
-    if (place >= 2 && place <= 4) {
+    if (step >= 2 && step <= 4) {
         at += sizeof "vertex" - 1;
         for (int c = 0; c < 3; c++) {
             const char *end, *word = glint_skip_blanks(at);
-            s->corners[place - 2][c] = glint_mesh_read_double(&r->text, word, &end);
+            s->corners[step - 2][c] = glint_mesh_read_double(&r->text, word, &end);
             if (end == word || !glint_ends_word(*end))
                 return glint_mesh_refuse(&r->text, "a number", word);
             at = end;
         }
     }
-    s->place = (place + 1) % 7;
-    return s->place ? GLINT_OK : add_triangle(r, s->corners);
+    s->step = (step + 1) % 7;
+    return s->step ? GLINT_OK : add_triangle(r, s->corners);
 }
 
 /// Reads the next line that is not empty, with its first word in lower case; *at NULL: there is none.
@@ -127,7 +127,7 @@ static glint_status read_text(glint_mesh_reader *r)
         if (!status)
             status = next_statement(r, &at);
     }
-    return !status && s.place ? glint_mesh_refuse(&r->text, WORDS[s.place], "the end of the file") : status;
+    return !status && s.step ? glint_mesh_refuse(&r->text, WORDS[s.step], "the end of the file") : status;
 }
 
 // ---- The file ----

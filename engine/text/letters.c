@@ -51,7 +51,7 @@ static void *resize(FT_Memory memory, long before, long size, void *block)
 }
 
 /// The paths of the font on common systems.
-static const char *const places[] = {
+static const char *const font_paths[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", // Debian
     "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", // Fedora
     "/usr/share/fonts/TTF/DejaVuSans.ttf", // Arch
@@ -109,8 +109,8 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
     if (!letters)
         return glint_fail_nomem(error);
     bool found = wanted && *wanted && open_path(letters, wanted);
-    for (size_t i = 0; i < sizeof places / sizeof *places && !found && !(wanted && *wanted); i++)
-        found = open_path(letters, places[i]);
+    for (size_t i = 0; i < sizeof font_paths / sizeof *font_paths && !found && !(wanted && *wanted); i++)
+        found = open_path(letters, font_paths[i]);
     const bool lost = letters->lost;
     if (found && !lost) {
         *out = letters;

@@ -22,7 +22,7 @@ static void forget(glint_cached_tile *cached, uint32_t light_count)
     cached->cast = cached->view = cached->pattern = cached->split = cached->seen = cached->boxed = none;
     for (uint32_t i = 0; i < light_count; i++) {
         glint_cached_light *light = &cached->lights[i];
-        light->light = light->facet = light->occlude = light->place = none;
+        light->light = light->facet = light->occlude = light->position = none;
     }
 }
 
@@ -368,7 +368,7 @@ void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint
     if (sampled)
         cached->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
     for (uint32_t i = 0; sampled && i < frame->reuse->light_count && cached->shown_count > 0; i++)
-        cached->lights[i].place = frame->plan->lights[i].place_key;
+        cached->lights[i].position = frame->plan->lights[i].position_key;
     glint_film_stamp stamp = stamp_of(tile, frame);
     const bool has_last = frame->last && frame->last != frame->image && frame->last->film; // pixel values still there
     const glint_film_stamp *last = has_last ? &frame->last->film[tile->index] : NULL;

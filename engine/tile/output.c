@@ -270,7 +270,7 @@ static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
     const glint_image *image = frame->image;
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++) {
-            const uint32_t i = glint_tile_place(tile, x, y);
+            const uint32_t i = glint_tile_slot(tile, x, y);
             alpha[x] = coverage_at(tile, frame->plan, i);
             for (int c = 0; c < 3; c++)
                 row[c][x] = tile->film.beauty[c][i];
@@ -289,7 +289,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++)
             for (int c = 0; c < 3; c++)
-                row[c][x] = tile->film.beauty[c][glint_tile_place(tile, x, y)];
+                row[c][x] = tile->film.beauty[c][glint_tile_slot(tile, x, y)];
         uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
         glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
                          &tile->counts.nonfinite);

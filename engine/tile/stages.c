@@ -263,7 +263,7 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
     vec_copy(args.coefficients, light->coefficients);
     for (uint32_t i = 0; i < count; i++) {
         args.light_sample[i] = glint_tile_light_sample_of(tile, &plan->lights[first + slot[i]]);
-        args.place[i] = plan->lights[first + slot[i]].position;
+        args.positions[i] = plan->lights[first + slot[i]].position;
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.cosine[i] = tile->at.light[slot[i]].cosine;
         args.attenuation[i] = tile->at.light[slot[i]].attenuation;
@@ -322,8 +322,8 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
 }
 
-void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
-                             double scale, uint32_t i, double out[3])
+void glint_tile_sample_position(const glint_tile *tile, glint_precision precision,
+                                const glint_light_sample *light_sample, double scale, uint32_t i, double out[3])
 {
     double point[3], normal[3];
     for (int c = 0; c < 3; c++)
@@ -336,7 +336,7 @@ void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, 
     }
     const double slack = precision == GLINT_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
     const glint_cone_sample sample = glint_cone_at(light_sample, scale, slack, point, normal, i % GLINT_GROUP);
-    vec_copy(out, sample.place);
+    vec_copy(out, sample.position);
 }
 
 void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
@@ -344,7 +344,7 @@ void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *fra
 {
     const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
     if (light_sample)
-        glint_tile_sample_place(tile, frame->plan->desc.precision, light_sample, light->scale, i, out);
+        glint_tile_sample_position(tile, frame->plan->desc.precision, light_sample, light->scale, i, out);
     else
         vec_copy(out, light->position);
 }

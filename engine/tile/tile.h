@@ -420,7 +420,8 @@ void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
 bool glint_tile_may_gather(const glint_tile_frame *frame);
 /// Lists the positions of the active pixels in the tile, if gathering pays and is possible in this frame. Returns
 /// their number; 0: the pixels are not gathered.
-uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES]);
+uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame,
+                                  uint16_t slots[GLINT_TILE_SAMPLES]);
 /// Return the number of samples of gathered pixels that are walked together, and the largest number of pixels.
 static inline uint32_t glint_tile_gathered_samples(const glint_plan *plan)
 {
@@ -433,14 +434,14 @@ static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
 }
 /// Fills the groups of the tile with `samples` samples, from number `first` on, of `count` listed pixels, sample by
 /// sample, and computes their rays.
-void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
-                       uint32_t samples);
+void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
+                       uint32_t first, uint32_t samples);
 /// Adds the light of faces and vertices, if any are visible. The points must be known.
 void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame);
 /// After the other stages: shades the samples, and after the last one resolves them into their pixels. The tile is
 /// then restored.
-void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
-                               uint32_t count, uint32_t first, uint32_t samples);
+void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count,
+                               const uint16_t *slots, uint32_t count, uint32_t first, uint32_t samples);
 
 /// effects/adaptive/refine.c: returns whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
@@ -472,8 +473,8 @@ static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
 }
 /// Computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal
 /// for GLINT_EMIT_CONE) must be known.
-void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
-                             double scale, uint32_t i, double out[3]);
+void glint_tile_sample_position(const glint_tile *tile, glint_precision precision,
+                                const glint_light_sample *light_sample, double scale, uint32_t i, double out[3]);
 /// Computes the target of sample i's ray to a light, relative to its point; for a directional light the direction.
 void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                              uint32_t i, double out[3]);
@@ -506,7 +507,7 @@ static inline const glint_light_sample *glint_tile_light_sample_of(const glint_t
 }
 
 /// Returns the index of pixel (x, y) in the tile's arrays.
-static inline uint32_t glint_tile_place(const glint_tile *tile, uint32_t x, uint32_t y)
+static inline uint32_t glint_tile_slot(const glint_tile *tile, uint32_t x, uint32_t y)
 {
     return ((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4;
 }

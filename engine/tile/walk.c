@@ -227,14 +227,15 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 }
 
 /// Renders some samples, from number `first` on, of `count` gathered pixels.
-static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first)
+static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
+                            uint32_t first)
 {
     const uint32_t remaining = (uint32_t)frame->plan->desc.samples - first,
                    most = glint_tile_gathered_samples(frame->plan);
     const uint32_t samples = remaining < most ? remaining : most;
     glint_sample_walk w = { .rays = true };
     tile->own_lights = 0;
-    glint_tile_gather(tile, frame, place, count, first, samples);
+    glint_tile_gather(tile, frame, slots, count, first, samples);
     const bool any = find_hits(tile, frame, &w);
     const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
     const bool lit = shading_points ? glint_tile_choose_sampled(tile, frame) : any;
@@ -245,25 +246,25 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
         glint_tile_need_points(tile, frame, &w);
         glint_tile_vertex_gathered(tile, frame);
     }
-    glint_tile_shade_gathered(tile, frame, lights, place, count, first, samples);
+    glint_tile_shade_gathered(tile, frame, lights, slots, count, first, samples);
 }
 
 /// Renders all samples of gathered pixels.
-static void take_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count)
+static void take_gathered(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count)
 {
     const uint32_t most = glint_tile_most_gathered(frame->plan), samples = (uint32_t)frame->plan->desc.samples;
     for (uint32_t i = 0; i < count; i += most)
         for (uint32_t k = 0; k < samples && !glint_tile_cancelled(frame); k += glint_tile_gathered_samples(frame->plan))
-            sample_gathered(tile, frame, place + i, count - i < most ? count - i : most, k);
+            sample_gathered(tile, frame, slots + i, count - i < most ? count - i : most, k);
 }
 
 /// Renders all samples of the active pixels. Returns false when cancelled.
 static bool take_samples(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    uint16_t place[GLINT_TILE_SAMPLES];
-    const uint32_t gathered = glint_tile_list_gathered(tile, frame, place);
-    take_gathered(tile, frame, place, gathered);
+    uint16_t slots[GLINT_TILE_SAMPLES];
+    const uint32_t gathered = glint_tile_list_gathered(tile, frame, slots);
+    take_gathered(tile, frame, slots, gathered);
     for (uint32_t k = 0; !gathered && k < (uint32_t)plan->desc.samples && !glint_tile_cancelled(frame); k++)
         sample(tile, frame, k);
     if (glint_tile_cancelled(frame))

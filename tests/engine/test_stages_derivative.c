@@ -142,7 +142,7 @@ static glint_bend_args any_bend(const glint_derivative_points *points, any_bend_
         buffers->prim.normal = buffers->normal;
     }
     buffers->part = (glint_derivative_part) { .moves = moves, .growth = moves && round ? between(-1, 1) : 0 };
-    any_three(moves, buffers->part.place);
+    any_three(moves, buffers->part.position);
     any_three(moves && !round, buffers->part.normal);
     any_three(!round, buffers->part.pivot);
     buffers->view = (glint_derivative_view) { .moves = sees, .nearer = along ? between(-1, 1) : 0 };
@@ -164,7 +164,7 @@ static glint_bend_args any_bend(const glint_derivative_points *points, any_bend_
                              .view = &buffers->view,
                              .camera = &buffers->camera };
     for (int c = 0; c < 3 && along; c++) {
-        args.place[c % 2] = sixteen(-4, 4);
+        args.screen[c % 2] = sixteen(-4, 4);
         args.shift[c] = sixteen(-1, 1);
         args.shift_slope[c] = sixteen(-1, 1);
     }

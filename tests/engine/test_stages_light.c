@@ -136,7 +136,7 @@ static void make_alike(glint_light_args *args, double (*place)[3])
         for (int c = 0; c < 3 && !args->directional; c++)
             place[s][c] *= length3(args->position) * power_of_ten(-1, 1);
         memcpy(place[s], s ? place[s] : args->position, sizeof place[s]);
-        args->place[s] = place[s];
+        args->positions[s] = place[s];
     }
 }
 

@@ -386,7 +386,7 @@ static void unit_case(int precision, bool odd)
         glint_unit_args args = { .group_count = groups,
                                  .camera = back ? &camera : NULL,
                                  .groups = places,
-                                 .place = one_place ? place : NULL,
+                                 .position = one_place ? place : NULL,
                                  .length = output("length", KIND_DOUBLE, n) };
         for (int c = 0; c < 3; c++) {
             args.unit[c] = output("unit", KIND_DOUBLE, n);

@@ -39,7 +39,7 @@ static bool meets(const double from[3], const glint_tint_light *light, const dou
 {
     double d[3], m[3], off[3];
     for (int c = 0; c < 3; c++) {
-        d[c] = light->directional ? light->place[c] : to[c] - from[c];
+        d[c] = light->directional ? light->position[c] : to[c] - from[c];
         m[c] = ball->center[c] - from[c];
     }
     const double most = light->directional ? HUGE_VAL : 1, t = fmin(fmax(vec_dot(m, d) / vec_dot(d, d), 0), most);
@@ -76,7 +76,7 @@ static counts try(const glint_tints *tints, const glint_tint_light *light, doubl
         bool met = false;
         for (int sample = 0; sample < 8; sample++) {
             double to[3];
-            within(to, light->place, light->radius);
+            within(to, light->position, light->radius);
             for (uint32_t k = 0; k < tints->count; k++)
                 met = met || meets(from, light, to, &tints->of[k]);
         }
@@ -98,7 +98,7 @@ static void test_rays(void **unused)
             place(tints.of[k].center, 8);
             tints.of[k].radius = exp(uniform(-9, 1.5));
         }
-        place(light.place, light.directional ? 1 : 10);
+        place(light.position, light.directional ? 1 : 10);
         const counts more = try(&tints, &light, exp(uniform(-6, 2)));
         sum.met += more.met;
         sum.told += more.told;
@@ -116,7 +116,7 @@ static void test_odd(void **unused)
     double point[3][GLINT_GROUP] = { { 0 } };
     for (int i = 0; i < GLINT_GROUP; i++)
         point[i % 3][i] = i % 2 ? NAN : HUGE_VAL;
-    const glint_tint_light light = { .place = { 0, 5, 0 } };
+    const glint_tint_light light = { .position = { 0, 5, 0 } };
     assert_int_equal(glint_tints_lanes(&tints, chosen, 1, (const double(*)[GLINT_GROUP])point, 0xffff, &light), 0xffff);
 }
 

@@ -84,7 +84,7 @@ static void take_codes(const glint_tile *tile, const glint_image *base, struct g
         const uint16_t *codes = (const uint16_t *)base->codes + channels * first;
         for (uint32_t x = 0; x < tile->width; x++)
             for (size_t c = 0; c < channels; c++)
-                work->group[GLINT_DIFFER_CODE + c][glint_tile_place(tile, x, y)] = codes[x * channels + c];
+                work->group[GLINT_DIFFER_CODE + c][glint_tile_slot(tile, x, y)] = codes[x * channels + c];
     }
 }
 
@@ -120,13 +120,13 @@ static void copy_column(const glint_tile *tile, const float *from, float *to)
 static void copy_borders(const glint_tile *tile, const float *from, float *const edge[2], float *const side[2])
 {
     for (int last = 0; last < 2; last++) {
-        const float *across = from + glint_tile_place(tile, 0, last ? tile->height - 1 : 0);
+        const float *across = from + glint_tile_slot(tile, 0, last ? tile->height - 1 : 0);
         const uint32_t whole = tile->width & ~3u;
         for (uint32_t x = 0; x < whole; x += 4, across += GLINT_GROUP)
             memcpy(edge[last] + x, across, 4 * sizeof *across);
         if (whole < tile->width)
             memcpy(edge[last] + whole, across, (tile->width - whole) * sizeof *across);
-        copy_column(tile, from + glint_tile_place(tile, last ? tile->width - 1 : 0, 0), side[last]);
+        copy_column(tile, from + glint_tile_slot(tile, last ? tile->width - 1 : 0, 0), side[last]);
     }
 }
 
@@ -246,7 +246,7 @@ static void compare_rows(const glint_tile *tile, const glint_refine *refine, con
         };
         for (int c = 0; c < 3; c++)
             for (uint32_t k = 0; k < 2; k++)
-                lines.light[k][c] = tile->film.beauty[c] + glint_tile_place(tile, 0, y + k * next);
+                lines.light[k][c] = tile->film.beauty[c] + glint_tile_slot(tile, 0, y + k * next);
         glint_refine_compare(refine, &lines, differ);
         const uint32_t along = differ[GLINT_DIFFER_ALONG], across = differ[GLINT_DIFFER_ACROSS];
         const uint32_t falling = differ[GLINT_DIFFER_FALLING], rising = differ[GLINT_DIFFER_RISING];

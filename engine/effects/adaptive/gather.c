@@ -35,7 +35,8 @@ static bool groups_samples(const glint_tile_frame *frame)
     return frame->geometry.prim_count > FEW_PRIMS || frame->plan->runs[GLINT_STAGE_VERTEX];
 }
 
-uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame, uint16_t place[GLINT_TILE_SAMPLES])
+uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame,
+                                  uint16_t slots[GLINT_TILE_SAMPLES])
 {
     const uint32_t across = tile->groups_across, down = tile->group_count / across;
     uint32_t count = 0, groups = 0;
@@ -49,28 +50,29 @@ uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame
                     continue;
                 groups += tile->active[g] != 0;
                 for (unsigned bits = tile->active[g]; bits; bits &= bits - 1)
-                    place[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
+                    slots[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
             }
     return count < FULL * GLINT_GROUP * groups ? count : 0;
 }
 
 /// Computes column and row, in the picture, of the pixel at a position in the tile.
-static void pixel_at(const glint_tile *tile, uint32_t place, double out[2])
+static void pixel_at(const glint_tile *tile, uint32_t slots, double out[2])
 {
-    const uint32_t g = place / GLINT_GROUP, lane = place % GLINT_GROUP;
+    const uint32_t g = slots / GLINT_GROUP, lane = slots % GLINT_GROUP;
     out[0] = tile->x0 + 4 * (g % tile->groups_across) + lane % 4;
     out[1] = tile->y0 + 4 * (g / tile->groups_across) + lane / 4;
 }
 
 /// Sets the camera's rays for the pixels at these positions: `samples` lanes each, at `offset` within the pixel. The
 /// remaining lanes repeat the first pixel, and are not active.
-static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count, const double (*offset)[GLINT_LIGHT_CHUNK],
-                         uint32_t samples, double (*pixel)[GLINT_TILE_SAMPLES])
+static void place_pixels(glint_tile *tile, const uint16_t *slots, uint32_t count,
+                         const double (*offset)[GLINT_LIGHT_CHUNK], uint32_t samples,
+                         double (*pixel)[GLINT_TILE_SAMPLES])
 {
     double first[2], end[2] = { 0, 0 }, at[2];
-    pixel_at(tile, place[0], first);
+    pixel_at(tile, slots[0], first);
     for (uint32_t i = 0; i < count; i++) {
-        pixel_at(tile, place[i], at);
+        pixel_at(tile, slots[i], at);
         for (int c = 0; c < 2; c++) {
             first[c] = at[c] < first[c] ? at[c] : first[c];
             end[c] = at[c] + 1 > end[c] ? at[c] + 1 : end[c];
@@ -90,13 +92,13 @@ static void place_pixels(glint_tile *tile, const uint16_t *place, uint32_t count
 }
 
 /// Makes the rays, one sample of all pixels after the other.
-static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
-                              uint32_t samples)
+static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
+                              uint32_t first, uint32_t samples)
 {
     static const double corner[2][GLINT_LIGHT_CHUNK] = { { 0 } };
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
     const size_t real = frame->plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
-    place_pixels(tile, place, count, corner, 1, tile->gathered->pixel);
+    place_pixels(tile, slots, count, corner, 1, tile->gathered->pixel);
     tile->camera.groups_across = 1;
     tile->camera.group_count = blocks;
     for (uint32_t k = 0; k < samples; k++) {
@@ -108,8 +110,8 @@ static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, c
 }
 
 /// Makes the rays, one pixel after the other.
-static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
-                            uint32_t samples)
+static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
+                            uint32_t first, uint32_t samples)
 {
     double offset[2][GLINT_LIGHT_CHUNK], at[2];
     for (uint32_t k = 0; k < samples; k++) {
@@ -117,7 +119,7 @@ static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, con
         offset[0][k] = at[0];
         offset[1][k] = at[1];
     }
-    place_pixels(tile, place, count, (const double(*)[GLINT_LIGHT_CHUNK])offset, samples, tile->gathered->pixel);
+    place_pixels(tile, slots, count, (const double(*)[GLINT_LIGHT_CHUNK])offset, samples, tile->gathered->pixel);
     tile->camera.groups_across = 1;
     tile->camera.group_count = (count * samples + GLINT_GROUP - 1) / GLINT_GROUP;
     tile->camera.offset[0] = tile->camera.offset[1] = 0; // they are in the pixels' positions
@@ -134,8 +136,8 @@ static void activate_lanes(glint_tile *tile, uint32_t every, uint32_t count)
     }
 }
 
-void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *place, uint32_t count, uint32_t first,
-                       uint32_t samples)
+void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
+                       uint32_t first, uint32_t samples)
 {
     struct glint_gathered *gathered = tile->gathered;
     const bool by_pixel = groups_samples(frame);
@@ -147,9 +149,9 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
     gathered->groups_across = tile->groups_across;
     glint_tile_aim(tile, frame, 0);
     if (by_pixel)
-        make_pixel_rays(tile, frame, place, count, first, samples);
+        make_pixel_rays(tile, frame, slots, count, first, samples);
     else
-        make_stacked_rays(tile, frame, place, count, first, samples);
+        make_stacked_rays(tile, frame, slots, count, first, samples);
     tile->groups_across = 1;
     tile->group_count = tile->camera.group_count = by_pixel ? every : samples * blocks;
     activate_lanes(tile, every, lanes);
@@ -247,8 +249,8 @@ void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_vertex_to(tile, frame, sum);
 }
 
-void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, const uint16_t *place,
-                               uint32_t count, uint32_t first, uint32_t samples)
+void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count,
+                               const uint16_t *slots, uint32_t count, uint32_t first, uint32_t samples)
 {
     struct glint_gathered *gathered = tile->gathered;
     float *const beauty[3] = { gathered->beauty[0], gathered->beauty[1], gathered->beauty[2] };
@@ -264,5 +266,5 @@ void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, 
     tile->groups_across = gathered->groups_across;
     for (int c = 0; c < 3 && last; c++)
         for (uint32_t i = 0; i < count; i++)
-            tile->film.beauty[c][place[i]] = beauty[c][i];
+            tile->film.beauty[c][slots[i]] = beauty[c][i];
 }

@@ -8,7 +8,7 @@
 
 /// Computes the gradient of a height in world space for one lane: from the derivatives in the shape's own space and in
 /// world space. on_surface: includes the derivatives by u and v.
-static void gradient_of(const struct glint_pattern *pattern, const glint_pattern_place *place, bool on_surface,
+static void gradient_of(const struct glint_pattern *pattern, const glint_pattern_space *space, bool on_surface,
                         uint32_t lane, double out[3])
 {
     double own[3];
@@ -18,8 +18,8 @@ static void gradient_of(const struct glint_pattern *pattern, const glint_pattern
             own[c] += pattern->slopes[6 + k][lane] * pattern->inputs.uv_slope[k][c][lane];
     }
     for (int c = 0; c < 3; c++) {
-        const double by_axes = place->mapped ? (place->inverse[0][c] * own[0] + place->inverse[1][c] * own[1]) +
-                                                   place->inverse[2][c] * own[2]
+        const double by_axes = space->mapped ? (space->inverse[0][c] * own[0] + space->inverse[1][c] * own[1]) +
+                                                   space->inverse[2][c] * own[2]
                                              : own[c];
         out[c] = by_axes + pattern->slopes[3 + c][lane];
     }
@@ -42,10 +42,10 @@ static bool perturb(double n[3], const double gradient[3], bool back)
     return true;
 }
 
-static const glint_pattern_place *place_of(const glint_tile_frame *frame, uint32_t prim)
+static const glint_pattern_space *space_of(const glint_tile_frame *frame, uint32_t prim)
 {
     const glint_geometry *geometry = frame->plan->geometry;
-    return &frame->plan->patterns->places[geometry->prim_part[frame->geometry.prims[prim].id]];
+    return &frame->plan->patterns->spaces[geometry->prim_part[frame->geometry.prims[prim].id]];
 }
 
 static void perturb_lanes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_lanes *entry, uint32_t k,
@@ -57,7 +57,7 @@ static void perturb_lanes(glint_tile *tile, const glint_tile_frame *frame, const
         double n[3], gradient[3];
         for (int c = 0; c < 3; c++)
             n[c] = glint_real_at(tile->surface.normal[c], precision, i);
-        gradient_of(tile->pattern, place_of(frame, tile->at.prim[i]), on_surface, k * GLINT_GROUP + lane, gradient);
+        gradient_of(tile->pattern, space_of(frame, tile->at.prim[i]), on_surface, k * GLINT_GROUP + lane, gradient);
         if (!perturb(n, gradient, glint_has_lane(tile->hit.back, i)))
             continue;
         for (int c = 0; c < 3; c++)
@@ -108,12 +108,12 @@ static bool is_above(const glint_tile *tile, const glint_plan *plan, const glint
                      uint32_t i)
 {
     const glint_light_sample *from = light->light_sample[sample];
-    const double *place = light->place[0] ? light->place[sample] : light->position;
+    const double *position = light->positions[0] ? light->positions[sample] : light->position;
     double n[3], l[3];
     if (from)
-        glint_tile_sample_place(tile, plan->desc.precision, from, light->scale, i, l);
+        glint_tile_sample_position(tile, plan->desc.precision, from, light->scale, i, l);
     else
-        vec_copy(l, place);
+        vec_copy(l, position);
     for (int c = 0; c < 3; c++) {
         n[c] = glint_real_at(tile->unbumped[c], plan->desc.precision, i);
         if (!light->directional)

@@ -62,7 +62,7 @@ static void curve_solid(const glint_solid *solid, const glint_prim *prim, const 
                                                                 within[3];
     vec_sub(from, hit->point, prim->center);
     for (int c = 0; c < 3; c++) // relative to the moving sphere
-        within[c] = (moved[c] - part->place[c]) - from[c] * part->growth;
+        within[c] = (moved[c] - part->position[c]) - from[c] * part->growth;
     for (int c = 0; c < 3; c++) {
         const double column[3] = { solid->forward[0][c], solid->forward[1][c], solid->forward[2][c] };
         k[c] = vec_dot(solid->inverse[c], from);
@@ -156,7 +156,7 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
     find_across(hit, prim, gradient);
     for (int c = 0; c < 3; c++) {
         off[c] = has_center ? hit->point[c] - prim->center[c] : 0;
-        rest += gradient[c] * ((part->place[c] - hit->carried[c]) + part->growth * off[c]);
+        rest += gradient[c] * ((part->position[c] - hit->carried[c]) + part->growth * off[c]);
         rest -= part->normal[c] * (hit->point[c] - part->pivot[c]);
     }
     const double further = rest / vec_dot(gradient, hit->direction), side = vec_dot(gradient, hit->normal) < 0 ? -1 : 1;
@@ -165,7 +165,7 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
         out->normal[c] = side * part->normal[c];
     }
     for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_SPHERE; c++)
-        out->normal[c] = ((out->point[c] - part->place[c]) - off[c] * part->growth) * (side / prim->radius);
+        out->normal[c] = ((out->point[c] - part->position[c]) - off[c] * part->growth) * (side / prim->radius);
     if (prim->kind == GLINT_PRIM_SOLID)
         curve_solid(&table->solids[prim->item], prim, part, hit, out->point, out->normal);
     else if (prim->kind == GLINT_PRIM_TRIANGLE && table->corner_normals && prim->item != GLINT_MISS)
@@ -174,7 +174,7 @@ static void hold(const bent_hit *hit, const glint_geometry_table *table, const g
 
 /// Computes the position of a sample in the picture, in half pixels from the middle: to the right and up. See the
 /// stage camera.
-static void find_place(const glint_tile *tile, uint32_t i, double out[2])
+static void find_screen_position(const glint_tile *tile, uint32_t i, double out[2])
 {
     const glint_camera_args *c = &tile->camera;
     const uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
@@ -200,12 +200,12 @@ static void aim(const glint_tile *tile, const glint_plan *plan, const glint_deri
 {
     const glint_plan_camera *camera = &plan->camera;
     const double near = plan->lens ? 1 / camera->focus : 0;
-    double place[2], at[3] = { 0 }, slope[3] = { 0 };
-    find_place(tile, i, place);
+    double screen[2], at[3] = { 0 }, slope[3] = { 0 };
+    find_screen_position(tile, i, screen);
     find_lens(tile, plan, view, i % GLINT_GROUP, at, slope);
     for (int c = 0; c < 3; c++) {
-        const double across = place[0] * camera->right[c] + place[1] * camera->up[c];
-        const double changed = place[0] * view->right[c] + place[1] * view->up[c];
+        const double across = screen[0] * camera->right[c] + screen[1] * camera->up[c];
+        const double changed = screen[0] * view->right[c] + screen[1] * view->up[c];
         from[c] = camera->eye[c] + ((camera->orthographic ? across : 0) + at[c]);
         moved[c] = view->eye[c] + ((camera->orthographic ? changed : 0) + slope[c]);
         direction[c] = camera->forward[c] + ((camera->orthographic ? 0 : across) - at[c] * near);
@@ -320,25 +320,25 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan)
 /// The input of the kernel for hits on one sphere or plane.
 typedef struct bend_buffers {
     glint_bend_args args;
-    _Alignas(64) double place[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
+    _Alignas(64) double screen[2][GLINT_GROUP], shift[3][GLINT_GROUP], shift_slope[3][GLINT_GROUP];
 } bend_buffers;
 
 /// Computes the positions of a group's samples in the picture and on the lens.
-static void find_places(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view, uint32_t g,
-                        bend_buffers *out)
+static void find_screen_positions(const glint_tile *tile, const glint_plan *plan, const glint_derivative_view *view,
+                                  uint32_t g, bend_buffers *out)
 {
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
         double middle[2], lens[3] = { 0 }, change[3] = { 0 };
-        find_place(tile, g * GLINT_GROUP + i, middle);
+        find_screen_position(tile, g * GLINT_GROUP + i, middle);
         find_lens(tile, plan, view, i, lens, change);
         for (int c = 0; c < 3; c++) {
-            out->place[c % 2][i] = middle[c % 2];
+            out->screen[c % 2][i] = middle[c % 2];
             out->shift[c][i] = lens[c];
             out->shift_slope[c][i] = change[c];
         }
     }
     for (int c = 0; c < 3; c++) {
-        out->args.place[c % 2] = out->place[c % 2];
+        out->args.screen[c % 2] = out->screen[c % 2];
         out->args.shift[c] = out->shift[c];
         out->args.shift_slope[c] = out->shift_slope[c];
     }
@@ -395,9 +395,9 @@ static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, siz
         out->args.part = part;
         out->args.view = &d->view;
         out->args.camera = &glint_derivative_of(tile)->camera[index];
-        out->args.place[0] = NULL;
+        out->args.screen[0] = NULL;
         if (d->view.moves && (plan->lens || plan->camera.orthographic))
-            find_places(tile, plan, &d->view, g, out);
+            find_screen_positions(tile, plan, &d->view, g, out);
     }
     return glint_lanes_equal(prims, lanes);
 }

@@ -249,14 +249,14 @@ static void fill_part(glint_derivative_part *out, const glint_part *part, const 
         return;
     for (int c = 0; c < 3; c++) {
         const double *row = part->map ? part->map->m[c] : NULL;
-        out->place[c] = row ? vec_dot(row, moved) : moved[c];
+        out->position[c] = row ? vec_dot(row, moved) : moved[c];
         out->pivot[c] = row ? vec_dot(row, at) + row[3] : at[c];
     }
     if (sphere)
         out->growth = slope->radius / desc->radius;
     else
         turn_normal(part->map, desc->normal, slope->normal, out->normal);
-    out->moves = glint_any_slope(out->place) || out->growth != 0 || glint_any_slope(out->normal);
+    out->moves = glint_any_slope(out->position) || out->growth != 0 || glint_any_slope(out->normal);
 }
 
 /// Marks what changes with the programs that have derivatives.

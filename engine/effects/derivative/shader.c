@@ -116,10 +116,10 @@ static void turn_points(const shading *s, size_t index, uint32_t e)
     for (unsigned bits = s->slopes->wanted[e]; bits; bits &= bits - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(bits), i = e * GLINT_GROUP + lane;
         const glint_prim *prim = &s->frame->geometry.prims[s->tile->at.prim[s->entries[e].group * GLINT_GROUP + lane]];
-        const glint_pattern_place *place = &plan->patterns->places[plan->geometry->prim_part[prim->id]];
+        const glint_pattern_space *space = &plan->patterns->spaces[plan->geometry->prim_part[prim->id]];
         const double world[3] = { input[GLINT_INPUT_WORLD_X][i], input[GLINT_INPUT_WORLD_Y][i], input[GLINT_INPUT_WORLD_Z][i] };
         for (int c = 0; c < 3; c++)
-            input[GLINT_INPUT_P_X + c][i] = place->mapped ? vec_dot(place->inverse[c], world) : world[c];
+            input[GLINT_INPUT_P_X + c][i] = space->mapped ? vec_dot(space->inverse[c], world) : world[c];
     }
 }
 
@@ -217,7 +217,7 @@ static uint32_t list_sums(const shading *s, const glint_gradient *gradient, uint
         glint_program_sums *sums = &s->slopes->sums[count];
         bool any = false;
         for (uint32_t n = from; n < gradient->count && n < from + gradient->each; n++) {
-            const glint_gradient_place at = gradient->of[n];
+            const glint_gradient_entry at = gradient->of[n];
             const bool slope_inputs = own->slope_inputs >> at.input & 1;
             sums->by[n - from] = slope_inputs ? own->input[at.input] : NULL;
             sums->sum_of[n - from] = (uint8_t)at.channel;

@@ -9,7 +9,7 @@
 /// A block of 4 x 4 pixels, seen through the same sequence of mirrors, with its number.
 typedef struct pixel_block {
     bool known;
-    uint64_t at, place, number;
+    uint64_t at, depth_code, number;
 } pixel_block;
 
 /// Orders the pixels of a block in squares of 2 x 2, so that each square gets an even set of numbers as well.
@@ -26,12 +26,12 @@ static void find_block(struct glint_indirect *indirect, const glint_tile *to, co
     const uint32_t group = ray->pixel / GLINT_GROUP;
     const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
     const uint64_t at = x | (uint64_t)y << 32,
-                   place = ray->term == GLINT_TERM_INDIRECT
-                               ? 0
-                               : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
-    if (!block->known || block->at != at || block->place != place) {
-        const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), place);
-        *block = (pixel_block) { .known = true, .at = at, .place = place, .number = number };
+                   depth_code = ray->term == GLINT_TERM_INDIRECT
+                                    ? 0
+                                    : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
+    if (!block->known || block->at != at || block->depth_code != depth_code) {
+        const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), depth_code);
+        *block = (pixel_block) { .known = true, .at = at, .depth_code = depth_code, .number = number };
     }
     indirect->block[i] = block->number;
     indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);

@@ -11,7 +11,7 @@ typedef struct outliner {
 /// The object, point and normal of a pixel.
 typedef struct point {
     size_t at;
-    double depth, place[3], normal[3]; ///< place: from the eye
+    double depth, position[3], normal[3]; ///< position: from the eye
 } point;
 
 static point point_at(const outliner *o, int x, int y)
@@ -29,7 +29,7 @@ static point point_at(const outliner *o, int x, int y)
     }
     const double scale = p.depth / sqrt(vec_dot(direction, direction));
     for (int c = 0; c < 3; c++)
-        p.place[c] = scale * direction[c] + (camera->orthographic ? aside[c] : 0);
+        p.position[c] = scale * direction[c] + (camera->orthographic ? aside[c] : 0);
     return p;
 }
 
@@ -39,7 +39,7 @@ static bool is_hit(const point *p) { return p->depth < HUGE_VAL; }
 static bool is_break(const point *p, const point *q)
 {
     double e[3];
-    vec_sub(e, q->place, p->place);
+    vec_sub(e, q->position, p->position);
     const double length = sqrt(vec_dot(e, e));
     const double up = vec_dot(e, p->normal), down = -vec_dot(e, q->normal);
     if (vec_dot(p->normal, q->normal) > GLINT_OUTLINE_SMOOTH)

@@ -68,8 +68,8 @@ static void gather_normals(const gathering *g, unsigned lanes)
 
 // ---- The point in the shape's own space ----
 
-/// Finds the lanes whose primitives belong to the same part as the first lane's. Returns the place of the part.
-static const glint_pattern_place *next_place(const gathering *g, unsigned pending, unsigned *lanes)
+/// Finds the lanes whose primitives belong to the same part as the first lane's. Returns the part's space.
+static const glint_pattern_space *next_space(const gathering *g, unsigned pending, unsigned *lanes)
 {
     const glint_geometry *geometry = g->frame->plan->geometry;
     const glint_prim *prims = g->frame->geometry.prims;
@@ -82,12 +82,12 @@ static const glint_pattern_place *next_place(const gathering *g, unsigned pendin
         if (id == first || geometry->prim_part[prims[id].id] == part)
             *lanes |= rest & -rest;
     }
-    return &g->frame->plan->patterns->places[part];
+    return &g->frame->plan->patterns->spaces[part];
 }
 
 /// Returns the axis of the box face that a lane is on, from the normal in the shape's own space. *upper: it is the
 /// face at `max`.
-static int face_of(const gathering *g, const glint_pattern_place *place, uint32_t lane, bool *upper)
+static int face_of(const gathering *g, const glint_pattern_space *space, uint32_t lane, bool *upper)
 {
     const size_t i = g->at + lane;
     double n[3], own[3];
@@ -95,8 +95,8 @@ static int face_of(const gathering *g, const glint_pattern_place *place, uint32_
     for (int c = 0; c < 3; c++)
         n[c] = glint_real_at(g->points->normal[c], g->frame->plan->desc.precision, (uint32_t)i);
     for (int c = 0; c < 3; c++) {
-        own[c] = place->mapped
-                     ? (place->forward[0][c] * n[0] + place->forward[1][c] * n[1]) + place->forward[2][c] * n[2]
+        own[c] = space->mapped
+                     ? (space->forward[0][c] * n[0] + space->forward[1][c] * n[1]) + space->forward[2][c] * n[2]
                      : n[c];
         axis = fabs(own[c]) > fabs(own[axis]) ? c : axis;
     }
@@ -106,29 +106,29 @@ static int face_of(const gathering *g, const glint_pattern_place *place, uint32_
 
 /// Sets the coordinate of points on axis-aligned faces to the exact coordinate of the face. Otherwise rounding would
 /// decide on which side of an integer a pattern sees the point.
-static void put_exact(const gathering *g, const glint_pattern_place *place, unsigned lanes)
+static void put_exact(const gathering *g, const glint_pattern_space *space, unsigned lanes)
 {
-    if (place->kind == GLINT_SHAPE_BOX) {
+    if (space->kind == GLINT_SHAPE_BOX) {
         for (; lanes; lanes &= lanes - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
             bool upper;
-            const int axis = face_of(g, place, lane, &upper);
-            row(g, GLINT_INPUT_P_X + axis)[lane] = upper ? place->upper[axis] : place->lower[axis];
+            const int axis = face_of(g, space, lane, &upper);
+            row(g, GLINT_INPUT_P_X + axis)[lane] = upper ? space->upper[axis] : space->lower[axis];
         }
         return;
     }
-    for (int i = 0; lanes == 0xffff && place->axis >= 0 && i < GLINT_GROUP; i++)
-        row(g, GLINT_INPUT_P_X + place->axis)[i] = place->face;
-    for (; lanes != 0xffff && lanes && place->axis >= 0; lanes &= lanes - 1)
-        row(g, GLINT_INPUT_P_X + place->axis)[__builtin_ctz(lanes)] = place->face;
+    for (int i = 0; lanes == 0xffff && space->axis >= 0 && i < GLINT_GROUP; i++)
+        row(g, GLINT_INPUT_P_X + space->axis)[i] = space->face;
+    for (; lanes != 0xffff && lanes && space->axis >= 0; lanes &= lanes - 1)
+        row(g, GLINT_INPUT_P_X + space->axis)[__builtin_ctz(lanes)] = space->face;
 }
 
 /// Maps a group's points, which are in the rows, from world space to the shape's own space.
-static void map_points(const gathering *g, const glint_pattern_place *place, unsigned lanes)
+static void map_points(const gathering *g, const glint_pattern_space *space, unsigned lanes)
 {
     double own[3][GLINT_GROUP];
     for (int c = 0; c < 3; c++) {
-        const double *m = place->inverse[c], *x = row(g, GLINT_INPUT_P_X), *y = row(g, GLINT_INPUT_P_Y),
+        const double *m = space->inverse[c], *x = row(g, GLINT_INPUT_P_X), *y = row(g, GLINT_INPUT_P_Y),
                      *z = row(g, GLINT_INPUT_P_Z);
         for (int i = 0; i < GLINT_GROUP; i++)
             own[c][i] = ((m[0] * x[i] + m[1] * y[i]) + m[2] * z[i]) + m[3];
@@ -145,10 +145,10 @@ static void gather_points(const gathering *g, unsigned lanes)
     for (int c = 0; c < 3; c++)
         load_group(g, g->points->point[c], row(g, GLINT_INPUT_P_X + c));
     for (unsigned rest = lanes, here; rest; rest &= ~here) {
-        const glint_pattern_place *place = next_place(g, rest, &here);
-        if (place->mapped)
-            map_points(g, place, here);
-        put_exact(g, place, here);
+        const glint_pattern_space *space = next_space(g, rest, &here);
+        if (space->mapped)
+            map_points(g, space, here);
+        put_exact(g, space, here);
     }
 }
 
@@ -209,22 +209,22 @@ static void gather_footprints(const gathering *g, unsigned lanes)
 // ---- Coordinates on the surface ----
 
 /// Returns the input of the surface coordinates for one lane. The point in the shape's own space must be known.
-static glint_uv_point uv_point_of(const gathering *g, const glint_pattern_place *place, uint32_t lane)
+static glint_uv_point uv_point_of(const gathering *g, const glint_pattern_space *space, uint32_t lane)
 {
     const glint_prim *prim = &g->frame->geometry.prims[g->points->prim[g->at + lane]];
-    glint_uv_point point = { .triangle = prim->id - place->first_prim };
+    glint_uv_point point = { .triangle = prim->id - space->first_prim };
     double d[3];
     for (int c = 0; c < 3; c++)
         point.p[c] = row(g, GLINT_INPUT_P_X + c)[lane];
-    if (place->kind == GLINT_SHAPE_BOX)
-        point.axis = face_of(g, place, lane, &point.upper);
-    if (place->kind != GLINT_SHAPE_SPHERE && place->kind != GLINT_SHAPE_SPHERES)
+    if (space->kind == GLINT_SHAPE_BOX)
+        point.axis = face_of(g, space, lane, &point.upper);
+    if (space->kind != GLINT_SHAPE_SPHERE && space->kind != GLINT_SHAPE_SPHERES)
         return point;
     for (int c = 0; c < 3; c++)
         d[c] = glint_real_at(g->points->point[c], g->frame->plan->desc.precision, (uint32_t)g->at + lane) -
                prim->center[c];
     for (int c = 0; c < 3; c++)
-        point.from_center[c] = place->mapped ? vec_dot(place->inverse[c], d) : d[c];
+        point.from_center[c] = space->mapped ? vec_dot(space->inverse[c], d) : d[c];
     return point;
 }
 
@@ -233,16 +233,16 @@ static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
         unsigned one;
-        const glint_pattern_place *place = next_place(g, lanes & -lanes, &one);
-        const glint_uv_point point = uv_point_of(g, place, lane);
+        const glint_pattern_space *space = next_space(g, lanes & -lanes, &one);
+        const glint_uv_point point = uv_point_of(g, space, lane);
         glint_surface_uv uv;
-        glint_surface_uv_at(place, &point, &uv);
+        glint_surface_uv_at(space, &point, &uv);
         row(g, GLINT_INPUT_UV_U)[lane] = uv.at[0];
         row(g, GLINT_INPUT_UV_V)[lane] = uv.at[1];
         for (int k = 0; k < 6; k++)
             g->inputs->uv_slope[k / 3][k % 3][g->to + lane] = uv.slope[k / 3][k % 3];
         if (reads & READS_UV_FOOTPRINT)
-            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = row(g, GLINT_INPUT_FOOTPRINT)[lane] * place->shrink / uv.unit;
+            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = row(g, GLINT_INPUT_FOOTPRINT)[lane] * space->shrink / uv.unit;
     }
 }
 
@@ -284,33 +284,33 @@ static void read_array(glint_pattern_inputs *inputs, int input, const void *arra
     inputs->from[input] = (const double *)array + (size_t)group * GLINT_GROUP;
 }
 
-/// Returns the place of the entry's shape if its own space is world space, except for a coordinate that all its points
+/// Returns the space of the entry's shape if its own space is world space, except for a coordinate that all its points
 /// share. NULL: there is none, or there are several.
-static const glint_pattern_place *plain_place(const glint_tile_frame *frame, const glint_pattern_points *points,
+static const glint_pattern_space *plain_space(const glint_tile_frame *frame, const glint_pattern_points *points,
                                               const glint_pattern_lanes *entry)
 {
     const gathering g = { NULL, frame, points, (size_t)entry->group * GLINT_GROUP, 0 };
     unsigned here;
-    const glint_pattern_place *place = next_place(&g, entry->lanes, &here);
-    return place->mapped || place->kind == GLINT_SHAPE_BOX || here != entry->lanes ? NULL : place;
+    const glint_pattern_space *space = next_space(&g, entry->lanes, &here);
+    return space->mapped || space->kind == GLINT_SHAPE_BOX || here != entry->lanes ? NULL : space;
 }
 
 /// Reads the points directly from the tile if all entries show one such shape.
 static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *frame, const glint_pattern_points *points,
                         const glint_pattern_lanes *entries, uint32_t count)
 {
-    const glint_pattern_place *place = plain_place(frame, points, &entries[0]);
-    if (!place)
+    const glint_pattern_space *space = plain_space(frame, points, &entries[0]);
+    if (!space)
         return false;
     const uint32_t prim = points->prim[entries[0].group * GLINT_GROUP + (uint32_t)__builtin_ctz(entries[0].lanes)];
     for (uint32_t k = 1; k < count && !points->only; k++)
         if (!glint_all_are(points->prim + (size_t)entries[k].group * GLINT_GROUP, prim) &&
-            plain_place(frame, points, &entries[k]) != place)
+            plain_space(frame, points, &entries[k]) != space)
             return false;
     for (int c = 0; c < 3; c++)
         read_array(inputs, GLINT_INPUT_P_X + c, points->point[c], entries[0].group);
-    if (place->axis >= 0)
-        glint_pattern_put_number(inputs, (glint_input)(GLINT_INPUT_P_X + place->axis), place->face);
+    if (space->axis >= 0)
+        glint_pattern_put_number(inputs, (glint_input)(GLINT_INPUT_P_X + space->axis), space->face);
     return true;
 }
 

@@ -72,13 +72,13 @@ static bool pack(const double from[GLINT_GROUP], unsigned lanes, uint16_t *bits)
 // ---- The first part -----------------------------------------------------------------------------------------------
 
 /// Caches one of a batch's values. Returns false if that is impossible.
-static bool keep_value(const glint_pattern_batch *batch, const double *value, bool truth, uint32_t place,
+static bool keep_value(const glint_pattern_batch *batch, const double *value, bool truth, uint32_t value_slot,
                        const kept_sample *to)
 {
     for (uint32_t k = 0; k < batch->count; k++, value += GLINT_GROUP) {
         const uint32_t group = batch->entries[k].group;
-        double *numbers = to->numbers + (size_t)place * GLINT_TILE_SAMPLES + (size_t)group * GLINT_GROUP;
-        if (truth && !pack(value, batch->entries[k].lanes, &to->truths[place * GLINT_TILE_GROUPS + group]))
+        double *numbers = to->numbers + (size_t)value_slot * GLINT_TILE_SAMPLES + (size_t)group * GLINT_GROUP;
+        if (truth && !pack(value, batch->entries[k].lanes, &to->truths[value_slot * GLINT_TILE_GROUPS + group]))
             return false;
         for (unsigned bits = truth ? 0 : batch->entries[k].lanes; bits; bits &= bits - 1)
             numbers[__builtin_ctz(bits)] = value[__builtin_ctz(bits)];
@@ -105,7 +105,7 @@ static bool keep_first(struct glint_pattern *pattern, const glint_tile_frame *fr
         args.result[k] = pattern->values[k];
     glint_pattern_call(pattern, frame, &code, 0, &args);
     for (uint32_t k = 0; k < code.output_count && good; k++)
-        good = keep_value(batch, pattern->values[k], of->split->truths >> k & 1, of->place[k], to);
+        good = keep_value(batch, pattern->values[k], of->split->truths >> k & 1, of->slot[k], to);
     return good;
 }
 
@@ -120,17 +120,17 @@ static bool are_in_order(const glint_pattern_batch *batch)
 }
 
 /// Sets an input of the second part to a cached value.
-static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch, uint32_t k, bool truth, uint32_t place,
-                       const kept_sample *from)
+static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch, uint32_t k, bool truth,
+                       uint32_t value_slot, const kept_sample *from)
 {
     const uint32_t *groups = batch->called.groups;
-    const double *numbers = from->numbers + (size_t)place * GLINT_TILE_SAMPLES;
+    const double *numbers = from->numbers + (size_t)value_slot * GLINT_TILE_SAMPLES;
     double *row = pattern->values[k];
     const bool in_place = !truth && are_in_order(batch);
     batch->args.input[k] = in_place ? numbers + (size_t)groups[0] * GLINT_GROUP : row;
     for (uint32_t e = 0; e < batch->count && !in_place; e++, row += GLINT_GROUP) {
         if (truth)
-            unpack(from->truths[place * GLINT_TILE_GROUPS + groups[e]] & batch->called.wanted[e], row);
+            unpack(from->truths[value_slot * GLINT_TILE_GROUPS + groups[e]] & batch->called.wanted[e], row);
         else
             memcpy(row, numbers + (size_t)groups[e] * GLINT_GROUP, GLINT_GROUP * sizeof *row);
     }
@@ -150,7 +150,7 @@ static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_ba
         call->group_count = batch->count;
         call->groups = batch->called.groups;
         call->wanted = batch->called.wanted;
-        call->truths = from->truths + (size_t)of->place[value] * GLINT_TILE_GROUPS;
+        call->truths = from->truths + (size_t)of->slot[value] * GLINT_TILE_GROUPS;
         call->plane = batch->args.plane[k];
     }
     for (uint32_t k = 0; k < code->output_count; k++)
@@ -163,7 +163,7 @@ static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pat
                       const glint_split_field *of, const glint_program_code *code, const kept_sample *from)
 {
     for (uint32_t k = 0; k < of->split->first.output_count; k++)
-        read_value(tile->pattern, batch, k, of->split->truths >> k & 1, of->place[k], from);
+        read_value(tile->pattern, batch, k, of->split->truths >> k & 1, of->slot[k], from);
     batch->args.code = code;
     batch->args.rows = tile->pattern->rows;
     batch->args.same = 0;

@@ -176,30 +176,30 @@ static int axis_of(const double v[3])
 }
 
 /// Returns the determinant of the map to the shape's own space.
-static double determinant_of(const glint_pattern_place *place)
+static double determinant_of(const glint_pattern_space *space)
 {
     double cross[3];
-    vec_cross(cross, place->inverse[1], place->inverse[2]);
-    return vec_dot(place->inverse[0], cross);
+    vec_cross(cross, space->inverse[1], space->inverse[2]);
+    return vec_dot(space->inverse[0], cross);
 }
 
-static void invert(glint_pattern_place *place, const glint_transform *map)
+static void invert(glint_pattern_space *space, const glint_transform *map)
 {
     double cofactors[3][3], scaled[3][3], largest = 0;
-    glint_transform_linear(map, place->forward);
+    glint_transform_linear(map, space->forward);
     for (int c = 0; c < 3; c++)
-        largest = fmax(largest, vec_max_abs(place->forward[c]));
+        largest = fmax(largest, vec_max_abs(space->forward[c]));
     const double scale = power_of_two_scale(largest);
     for (int c = 0; c < 3; c++)
-        vec_scale(scaled[c], place->forward[c], scale);
+        vec_scale(scaled[c], space->forward[c], scale);
     const double determinant = glint_linear_cofactors(scaled, cofactors);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
-            place->inverse[i][j] = cofactors[j][i] / determinant * scale;
-        place->inverse[i][3] = -((place->inverse[i][0] * map->m[0][3] + place->inverse[i][1] * map->m[1][3]) +
-                                 place->inverse[i][2] * map->m[2][3]);
+            space->inverse[i][j] = cofactors[j][i] / determinant * scale;
+        space->inverse[i][3] = -((space->inverse[i][0] * map->m[0][3] + space->inverse[i][1] * map->m[1][3]) +
+                                 space->inverse[i][2] * map->m[2][3]);
     }
-    place->mapped = true;
+    space->mapped = true;
 }
 
 /// Computes two unit vectors perpendicular to a unit vector (Duff et al., JCGT 6(1), 2017).
@@ -213,69 +213,69 @@ static void sides_of(const double n[3], double side[2][3])
 }
 
 /// Sets the origin and the axes of the surface coordinates.
-static void surface_init(glint_pattern_place *place, const glint_shape_desc *desc)
+static void surface_init(glint_pattern_space *space, const glint_shape_desc *desc)
 {
     double along[3];
     switch (desc->kind) {
     case GLINT_SHAPE_PLANE:
     case GLINT_SHAPE_DISK:
-        vec_copy(place->origin, desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center);
+        vec_copy(space->origin, desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center);
         vec_normalize(along, desc->normal);
-        sides_of(along, place->side);
+        sides_of(along, space->side);
         break;
     case GLINT_SHAPE_CYLINDER:
     case GLINT_SHAPE_CONE:
-        vec_copy(place->origin, desc->base);
+        vec_copy(space->origin, desc->base);
         vec_sub(along, desc->top, desc->base);
-        place->length = sqrt(vec_dot(along, along));
-        place->radius = desc->radius;
-        vec_scale(place->along, along, 1 / (place->length * place->length));
+        space->length = sqrt(vec_dot(along, along));
+        space->radius = desc->radius;
+        vec_scale(space->along, along, 1 / (space->length * space->length));
         vec_normalize(along, along);
-        sides_of(along, place->side);
+        sides_of(along, space->side);
         break;
     case GLINT_SHAPE_TORUS:
-        vec_copy(place->origin, desc->center);
-        vec_normalize(place->along, desc->axis);
-        sides_of(place->along, place->side);
-        place->radius = desc->minor;
-        place->length = desc->major;
+        vec_copy(space->origin, desc->center);
+        vec_normalize(space->along, desc->axis);
+        sides_of(space->along, space->side);
+        space->radius = desc->minor;
+        space->length = desc->major;
         break;
     default:
         break;
     }
 }
 
-static void place_init(glint_pattern_place *place, const glint_part *part)
+static void space_init(glint_pattern_space *space, const glint_part *part)
 {
     const glint_shape_desc *desc = &part->shape->desc;
     const bool flat = desc->kind == GLINT_SHAPE_PLANE || desc->kind == GLINT_SHAPE_DISK;
-    *place = (glint_pattern_place) { .kind = desc->kind, .axis = flat ? axis_of(desc->normal) : -1 };
+    *space = (glint_pattern_space) { .kind = desc->kind, .axis = flat ? axis_of(desc->normal) : -1 };
     if (part->map)
-        invert(place, part->map);
-    if (place->axis >= 0)
-        place->face = (desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center)[place->axis];
-    place->shrink = place->mapped ? glint_pow(fabs(determinant_of(place)), 1 / 3.0) : 1;
-    surface_init(place, desc);
-    vec_copy(place->lower, desc->min);
-    vec_copy(place->upper, desc->max);
-    place->first_prim = part->first_prim;
+        invert(space, part->map);
+    if (space->axis >= 0)
+        space->face = (desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center)[space->axis];
+    space->shrink = space->mapped ? glint_pow(fabs(determinant_of(space)), 1 / 3.0) : 1;
+    surface_init(space, desc);
+    vec_copy(space->lower, desc->min);
+    vec_copy(space->upper, desc->max);
+    space->first_prim = part->first_prim;
 }
 
-static glint_key place_key(const glint_pattern_place *place, uint32_t part, glint_key key)
+static glint_key space_key(const glint_pattern_space *space, uint32_t part, glint_key key)
 {
-    const double kind[] = { part, place->kind, place->mapped, place->axis, place->face };
+    const double kind[] = { part, space->kind, space->mapped, space->axis, space->face };
     key = glint_key_add(key, kind, sizeof kind);
-    key = glint_key_add(key, place->inverse, sizeof place->inverse);
-    key = glint_key_add(key, place->forward, sizeof place->forward);
-    key = glint_key_add(key, place->lower, sizeof place->lower);
-    key = glint_key_add(key, place->origin, sizeof place->origin);
-    key = glint_key_add(key, place->along, sizeof place->along);
-    key = glint_key_add(key, place->side, sizeof place->side);
-    key = glint_key_add(key, &place->radius, sizeof place->radius);
-    key = glint_key_add(key, &place->length, sizeof place->length);
-    if (place->mesh)
-        key = glint_key_add(key, &place->mesh->uv_key, sizeof place->mesh->uv_key);
-    return glint_key_add(key, place->upper, sizeof place->upper);
+    key = glint_key_add(key, space->inverse, sizeof space->inverse);
+    key = glint_key_add(key, space->forward, sizeof space->forward);
+    key = glint_key_add(key, space->lower, sizeof space->lower);
+    key = glint_key_add(key, space->origin, sizeof space->origin);
+    key = glint_key_add(key, space->along, sizeof space->along);
+    key = glint_key_add(key, space->side, sizeof space->side);
+    key = glint_key_add(key, &space->radius, sizeof space->radius);
+    key = glint_key_add(key, &space->length, sizeof space->length);
+    if (space->mesh)
+        key = glint_key_add(key, &space->mesh->uv_key, sizeof space->mesh->uv_key);
+    return glint_key_add(key, space->upper, sizeof space->upper);
 }
 
 static bool reads_uv(const glint_plan_pattern *own)
@@ -287,11 +287,11 @@ static bool reads_uv(const glint_plan_pattern *own)
 }
 
 /// Checks that all faces of a mesh with its `material`-th material have coordinates.
-static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *shape, size_t material,
+static glint_status take_mesh_uv(glint_pattern_space *space, const glint_shape *shape, size_t material,
                                  glint_error *error)
 {
     const char *name = shape->desc.name, *before = name[0] ? " '" : "", *after = name[0] ? "'" : "";
-    place->mesh = shape->mesh;
+    space->mesh = shape->mesh;
     if (!shape->mesh->uv)
         return glint_fail(error, GLINT_ERR_INVALID,
                           "s.uv: mesh%s%s%s has no texture coordinates: uv, or vt in its file, expected", before,
@@ -302,11 +302,11 @@ static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *
     return GLINT_OK;
 }
 
-/// Fills the places of the shapes whose materials have programs.
-static glint_status find_places(glint_plan_patterns *patterns, const glint_geometry *geometry, glint_error *error)
+/// Fills the spaces of the shapes whose materials have programs.
+static glint_status find_spaces(glint_plan_patterns *patterns, const glint_geometry *geometry, glint_error *error)
 {
-    patterns->places = glint_alloc(geometry->part_count, sizeof *patterns->places);
-    if (!patterns->places)
+    patterns->spaces = glint_alloc(geometry->part_count, sizeof *patterns->spaces);
+    if (!patterns->spaces)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < geometry->part_count; i++) {
         const glint_part *part = &geometry->parts[i];
@@ -316,14 +316,14 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
             if (!own->any)
                 continue;
             if (!begun)
-                place_init(&patterns->places[i], part);
+                space_init(&patterns->spaces[i], part);
             begun = true;
             glint_status status = part->shape->mesh && reads_uv(own)
-                                      ? take_mesh_uv(&patterns->places[i], part->shape, k, error)
+                                      ? take_mesh_uv(&patterns->spaces[i], part->shape, k, error)
                                       : GLINT_OK;
             if (status)
                 return status;
-            own->places = place_key(&patterns->places[i], i, own->places);
+            own->spaces = space_key(&patterns->spaces[i], i, own->spaces);
         }
     }
     return GLINT_OK;
@@ -360,7 +360,7 @@ glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_err
     lay_out(patterns, patterns->material_count);
     patterns->pixel = 2 * sqrt(vec_dot(plan->camera.right, plan->camera.right));
     patterns->parallel = plan->camera.orthographic;
-    return find_places(patterns, plan->geometry, error);
+    return find_spaces(patterns, plan->geometry, error);
 }
 
 void glint_plan_patterns_free(glint_plan_patterns *patterns)
@@ -371,7 +371,7 @@ void glint_plan_patterns_free(glint_plan_patterns *patterns)
             glint_program_release((glint_program *)patterns->of[i].program[field]);
     }
     if (patterns)
-        free(patterns->places), free(patterns->of);
+        free(patterns->spaces), free(patterns->of);
     free(patterns);
 }
 
@@ -384,7 +384,7 @@ glint_key glint_pattern_key(const glint_plan_patterns *patterns, uint32_t materi
         const glint_key parts[] = { program->structure, program->numbers };
         key = glint_key_add(key, &field, sizeof field);
         key = glint_key_add(key, parts, sizeof parts);
-        key = glint_key_add(key, &patterns->of[material].places, sizeof patterns->of[material].places);
+        key = glint_key_add(key, &patterns->of[material].spaces, sizeof patterns->of[material].spaces);
         key = glint_key_add(key, &patterns->of[material].numbers, sizeof patterns->of[material].numbers);
     }
     return key;

@@ -49,11 +49,11 @@ typedef struct glint_plan_pattern {
     bool repaints; ///< some derivative of the frame depends on numbers of its programs
     bool ambient_follows; ///< ambient equals diffuse
     glint_key numbers; ///< hash of the fields that are read in addition to the programs
-    glint_key places; ///< hash of the places of the shapes with this material
+    glint_key spaces; ///< hash of the spaces of the shapes with this material
 } glint_plan_pattern;
 
 /// A shape's own space, and the constants of its surface there.
-typedef struct glint_pattern_place {
+typedef struct glint_pattern_space {
     bool mapped; ///< false: world space
     double inverse[3][4]; ///< own point = inverse world point
     double forward[3][3]; ///< own normal = transpose(forward) world normal, up to its length
@@ -71,11 +71,11 @@ typedef struct glint_pattern_place {
     const struct glint_mesh *mesh; ///< the mesh whose coordinates are read; its triangles are the primitives from
         ///< `first_prim` on
     uint32_t first_prim; ///< by id
-} glint_pattern_place;
+} glint_pattern_space;
 
 typedef struct glint_plan_patterns {
     glint_plan_pattern *of; ///< one for each material of the plan
-    glint_pattern_place *places; ///< one for each part of the geometry
+    glint_pattern_space *spaces; ///< one for each part of the geometry
     int plane[GLINT_FIELD_PLANES]; ///< the first plane of a field; -1: no material has it
     int planes[GLINT_FIELD_PLANES]; ///< number of planes: one per channel, or one if every material is grey
     uint32_t plane_count;

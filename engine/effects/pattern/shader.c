@@ -91,16 +91,16 @@ void glint_shader_gather(glint_tile *tile, const glint_tile_frame *frame, const 
 }
 
 /// Computes the direction and distance from the batch to a sample of an area light.
-static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *b, const reached *lit,
-                         const glint_plan_light *light, const glint_light_sample *sample)
+static void store_sample_positions(glint_tile *tile, const glint_plan *plan, const batch *b, const reached *lit,
+                                   const glint_plan_light *light, const glint_light_sample *sample)
 {
     for (uint32_t k = lit->first; k < lit->first + lit->count; k++)
         for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-            double place[3];
-            glint_tile_sample_place(tile, plan->desc.precision, sample, light->scale, b->groups[k] * GLINT_GROUP + i,
-                                    place);
+            double position[3];
+            glint_tile_sample_position(tile, plan->desc.precision, sample, light->scale, b->groups[k] * GLINT_GROUP + i,
+                                       position);
             for (int c = 0; c < 3; c++)
-                tile->pattern->inputs.row[GLINT_INPUT_L_X + c][k * GLINT_GROUP + i] = place[c];
+                tile->pattern->inputs.row[GLINT_INPUT_L_X + c][k * GLINT_GROUP + i] = position[c];
         }
 }
 
@@ -113,7 +113,7 @@ static void gather_light_directions(glint_tile *tile, const glint_tile_frame *fr
     const size_t at = light->directional ? 0 : (size_t)lit->first * GLINT_GROUP; // one direction for all points
     const bool measured = glint_program_reads(b->program, GLINT_INPUT_DISTANCE) && !light->directional;
     glint_unit_args args = { .group_count = light->directional ? 1 : lit->count,
-                             .place = sample ? NULL : light->position,
+                             .position = sample ? NULL : light->position,
                              .length = measured ? glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at : NULL };
     for (int c = 0; c < 3; c++) {
         double *direction = inputs->row[GLINT_INPUT_L_X + c] + at;
@@ -122,7 +122,7 @@ static void gather_light_directions(glint_tile *tile, const glint_tile_frame *fr
         args.unit[c] = direction;
     }
     if (sample)
-        place_sample(tile, frame->plan, b, lit, light, sample);
+        store_sample_positions(tile, frame->plan, b, lit, light, sample);
     frame->stages->unit(&args);
     inputs->same &= ~(7u << GLINT_INPUT_L_X);
     if (!light->directional)

@@ -31,12 +31,12 @@ static void ball_uv(const double d[3], glint_surface_uv *out)
 }
 
 /// Box: 0 .. 1 on each face, seen from outside with y upwards; on the top and bottom faces with -z and z upwards.
-static void box_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
+static void box_uv(const glint_pattern_space *space, const glint_uv_point *point, glint_surface_uv *out)
 {
     const int axis = point->axis, along[2] = { axis == 0 ? 2 : 0, axis == 1 ? 2 : 1 };
     const bool turned[2] = { axis == 0 ? point->upper : axis == 2 && !point->upper, axis == 1 && point->upper };
     for (int k = 0; k < 2; k++) {
-        const double low = place->lower[along[k]], high = place->upper[along[k]], p = point->p[along[k]];
+        const double low = space->lower[along[k]], high = space->upper[along[k]], p = point->p[along[k]];
         out->at[k] = (turned[k] ? high - p : p - low) / (high - low);
         out->slope[k][along[k]] = (turned[k] ? -1 : 1) / (high - low);
         out->unit = k == 0 ? high - low : fmin(out->unit, high - low);
@@ -44,40 +44,40 @@ static void box_uv(const glint_pattern_place *place, const glint_uv_point *point
 }
 
 /// Plane and disk: lengths from the point. Cylinder and cone: u around the axis, v from base to top.
-static void axis_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
+static void axis_uv(const glint_pattern_space *space, const double p[3], glint_surface_uv *out)
 {
     double d[3];
-    vec_sub(d, p, place->origin);
-    const double x = vec_dot(d, place->side[0]), y = vec_dot(d, place->side[1]), turn = (x * x + y * y) * TURN;
-    if (place->length == 0) {
+    vec_sub(d, p, space->origin);
+    const double x = vec_dot(d, space->side[0]), y = vec_dot(d, space->side[1]), turn = (x * x + y * y) * TURN;
+    if (space->length == 0) {
         *out = (glint_surface_uv) { { x, y }, .unit = 1 };
-        vec_copy(out->slope[0], place->side[0]);
-        vec_copy(out->slope[1], place->side[1]);
+        vec_copy(out->slope[0], space->side[0]);
+        vec_copy(out->slope[1], space->side[1]);
         return;
     }
     out->at[0] = around(x, -y);
-    out->at[1] = fmin(fmax(vec_dot(d, place->along), 0), BELOW_1); // a cap shows one row of a texture despite rounding
-    out->unit = fmin(TURN * place->radius, place->length);
+    out->at[1] = fmin(fmax(vec_dot(d, space->along), 0), BELOW_1); // a cap shows one row of a texture despite rounding
+    out->unit = fmin(TURN * space->radius, space->length);
     for (int c = 0; c < 3; c++)
-        out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / turn;
-    vec_copy(out->slope[1], place->along);
+        out->slope[0][c] = (x * space->side[1][c] - y * space->side[0][c]) / turn;
+    vec_copy(out->slope[1], space->along);
 }
 
 /// Torus: u around its axis like a cylinder, v around its tube, 0 .. 1 from the inside of the ring through its lower
 /// side.
-static void torus_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
+static void torus_uv(const glint_pattern_space *space, const double p[3], glint_surface_uv *out)
 {
     double d[3];
-    vec_sub(d, p, place->origin);
-    const double x = vec_dot(d, place->side[0]), y = vec_dot(d, place->side[1]), z = vec_dot(d, place->along);
-    const double round2 = x * x + y * y, round = sqrt(round2), off = round - place->length, tube2 = off * off + z * z;
+    vec_sub(d, p, space->origin);
+    const double x = vec_dot(d, space->side[0]), y = vec_dot(d, space->side[1]), z = vec_dot(d, space->along);
+    const double round2 = x * x + y * y, round = sqrt(round2), off = round - space->length, tube2 = off * off + z * z;
     out->at[0] = around(x, -y);
     out->at[1] = around(z, off);
-    out->unit = TURN * fmin(round, place->radius);
+    out->unit = TURN * fmin(round, space->radius);
     for (int c = 0; c < 3; c++) {
-        const double outward = (x * place->side[0][c] + y * place->side[1][c]) / round;
-        out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / (round2 * TURN);
-        out->slope[1][c] = (off * place->along[c] - z * outward) / (tube2 * TURN);
+        const double outward = (x * space->side[0][c] + y * space->side[1][c]) / round;
+        out->slope[0][c] = (x * space->side[1][c] - y * space->side[0][c]) / (round2 * TURN);
+        out->slope[1][c] = (off * space->along[c] - z * outward) / (tube2 * TURN);
     }
 }
 
@@ -99,9 +99,9 @@ static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p
 /// Mesh: interpolated between the corners, u0 + (w1 (u1 - u0) + w2 (u2 - u0)). The result is clamped to the range of
 /// the corners, because rounding can move a point beyond an edge. If the corners agree, the result is exactly their
 /// value.
-static void mesh_uv(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
+static void mesh_uv(const glint_pattern_space *space, const glint_uv_point *point, glint_surface_uv *out)
 {
-    const glint_mesh *mesh = place->mesh;
+    const glint_mesh *mesh = space->mesh;
     const uint32_t *at = (mesh->triangle_uv ? mesh->triangle_uv : mesh->triangles)[point->triangle];
     const double *corner[3] = { mesh->uv[at[0]], mesh->uv[at[1]], mesh->uv[at[2]] };
     double side[3][3], n[3], across[2][3], steepest2 = 0;
@@ -123,17 +123,17 @@ static void mesh_uv(const glint_pattern_place *place, const glint_uv_point *poin
     out->unit = 1 / sqrt(steepest2);
 }
 
-void glint_surface_uv_at(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
+void glint_surface_uv_at(const glint_pattern_space *space, const glint_uv_point *point, glint_surface_uv *out)
 {
     *out = (glint_surface_uv) { .unit = 1 };
-    if (place->kind == GLINT_SHAPE_MESH)
-        mesh_uv(place, point, out);
-    else if (place->kind == GLINT_SHAPE_BOX)
-        box_uv(place, point, out);
-    else if (place->kind == GLINT_SHAPE_SPHERE || place->kind == GLINT_SHAPE_SPHERES)
+    if (space->kind == GLINT_SHAPE_MESH)
+        mesh_uv(space, point, out);
+    else if (space->kind == GLINT_SHAPE_BOX)
+        box_uv(space, point, out);
+    else if (space->kind == GLINT_SHAPE_SPHERE || space->kind == GLINT_SHAPE_SPHERES)
         ball_uv(point->from_center, out);
-    else if (place->kind == GLINT_SHAPE_TORUS)
-        torus_uv(place, point->p, out);
+    else if (space->kind == GLINT_SHAPE_TORUS)
+        torus_uv(space, point->p, out);
     else
-        axis_uv(place, point->p, out);
+        axis_uv(space, point->p, out);
 }

@@ -19,6 +19,6 @@ typedef struct glint_surface_uv {
     double slope[2][3]; ///< gradients of u and v in that space
 } glint_surface_uv;
 
-void glint_surface_uv_at(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out);
+void glint_surface_uv_at(const glint_pattern_space *space, const glint_uv_point *point, glint_surface_uv *out);
 
 #endif

@@ -86,7 +86,8 @@ void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_ge
 /// Returns a bound of the rounding error along the segments from some points to a light, at its largest distance.
 static double slack_of(const glint_tints *tints, double points, const glint_tint_light *light)
 {
-    const double far = light->directional ? tints->extent : sqrt(vec_dot(light->place, light->place)) + light->radius;
+    const double far =
+        light->directional ? tints->extent : sqrt(vec_dot(light->position, light->position)) + light->radius;
     return SLACK * (4 * tints->extent + points + far);
 }
 
@@ -100,7 +101,7 @@ static inline int is_clear(const double p[3], double points, const glint_ball *q
     const double radius = q->radius + points + slack, rise = light->directional ? 0 : light->radius - points;
     for (int k = 0; k < 3; k++) {
         m[k] = q->center[k] - p[k];
-        d[k] = light->directional ? light->place[k] : light->place[k] - p[k];
+        d[k] = light->directional ? light->position[k] : light->position[k] - p[k];
     }
     const double a = vec_dot(d, d) - rise * rise, b = -vec_dot(m, d) - radius * rise, c = vec_dot(m, m) - radius * radius;
     const int past = (a > 0) & ((b >= 0) | (b * b < a * c));

@@ -26,8 +26,8 @@ void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_ge
 /// The target of the rays from points to one light.
 typedef struct glint_tint_light {
     bool directional;
-    double place[3]; ///< directional: the direction
-    double radius; ///< of an area light's samples around `place`
+    double position[3]; ///< directional: the direction
+    double radius; ///< of an area light's samples around `position`
 } glint_tint_light;
 
 /// Returns the lanes of a group whose rays to a light may hit one of `count` balls listed in `chosen`. point: sixteen

@@ -123,7 +123,7 @@ static glint_tint_light light_seen(const glint_tile *tile, const glint_plan_ligh
 {
     const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
     glint_tint_light seen = { .directional = light->directional, .radius = light_sample ? light_sample->radius : 0 };
-    vec_copy(seen.place, light_sample ? light_sample->center : light->position);
+    vec_copy(seen.position, light_sample ? light_sample->center : light->position);
     return seen;
 }
 
@@ -327,7 +327,7 @@ static void begin_ray(struct glint_transparent_shadow *transparent_shadow, const
 }
 
 /// Sets the active lanes. The other lanes of the last group get dummy rays.
-static void close_places(struct glint_transparent_shadow *transparent_shadow, glint_precision precision, uint32_t count)
+static void close_slots(struct glint_transparent_shadow *transparent_shadow, glint_precision precision, uint32_t count)
 {
     transparent_shadow->group_count = (count + GLINT_GROUP - 1) / GLINT_GROUP;
     for (uint32_t g = 0; g < transparent_shadow->group_count; g++)
@@ -347,7 +347,7 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
                   const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count, uint32_t from,
                   uint32_t end)
 {
-    uint32_t places = 0;
+    uint32_t slots = 0;
     transparent_shadow->count = 0;
     for (uint32_t row = 0; row < count; row++) {
         const glint_plan_light *light = &frame->plan->lights[index + row];
@@ -357,16 +357,16 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
             for (unsigned bits = followed(tile, slot + row, g) | dim; bits; bits &= bits - 1) {
                 const unsigned bit = bits & -bits;
                 begin_ray(transparent_shadow, tile, frame, light, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits),
-                          !(dim & bit) && (tile->hit.back[g] & bit), places);
+                          !(dim & bit) && (tile->hit.back[g] & bit), slots);
                 if (dim & bit)
-                    arrive(transparent_shadow, frame->plan, light, places);
+                    arrive(transparent_shadow, frame->plan, light, slots);
                 else
-                    places++;
+                    slots++;
             }
         }
     }
     transparent_shadow->first[count] = transparent_shadow->count;
-    close_places(transparent_shadow, frame->plan->desc.precision, places);
+    close_slots(transparent_shadow, frame->plan->desc.precision, slots);
 }
 
 static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame)
@@ -459,7 +459,7 @@ static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile
             }
         }
     }
-    close_places(transparent_shadow, precision, next);
+    close_slots(transparent_shadow, precision, next);
 }
 
 // ---- The light of the rays ----

@@ -87,7 +87,8 @@ static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32
     if (number + 1 < geometry->table.shading_point_count && geometry->shading_point_prims[number + 1] == first + 1)
         return 1; // the next triangle begins the next face
     while (first + count < end &&
-           geometry->shading_points[geometry->prims[geometry->places[first + count]].shading_points].at[0] == number)
+           geometry->shading_points[geometry->prims[geometry->index_of_id[first + count]].shading_points].at[0] ==
+               number)
         count++;
     return count;
 }
@@ -119,11 +120,11 @@ static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, 
 {
     const double scale = geometry->table.scale;
     double total = 0, largest = 0, middle[3] = { 0 }, w[2] = { 1 / 3.0, 1 / 3.0 };
-    const double *origin = geometry->prims[geometry->places[first]].corner[0];
+    const double *origin = geometry->prims[geometry->index_of_id[first]].corner[0];
     uint32_t best = first;
     vec_scale(s->normal, s->normal, 0);
     for (uint32_t id = first; id < first + count; id++) {
-        const glint_prim *prim = &geometry->prims[geometry->places[id]];
+        const glint_prim *prim = &geometry->prims[geometry->index_of_id[id]];
         double area[3];
         area_of(prim, scale, area);
         const double size = sqrt(vec_dot(area, area));
@@ -142,13 +143,13 @@ static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, 
         vec_normalize(s->normal, s->normal);
     for (uint32_t id = first; id < first + count; id++) {
         double x[2];
-        if (!(weights_of(&geometry->prims[geometry->places[id]], scale, middle, s->normal, x) >= -0x1p-40))
+        if (!(weights_of(&geometry->prims[geometry->index_of_id[id]], scale, middle, s->normal, x) >= -0x1p-40))
             continue;
         best = id;
         w[0] = x[0], w[1] = x[1];
         break;
     }
-    s->prim = geometry->places[best];
+    s->prim = geometry->index_of_id[best];
     put_on(s, &geometry->prims[s->prim], w);
 }
 
@@ -170,7 +171,7 @@ static void find_shading_point(const glint_geometry *geometry, uint32_t number, 
 {
     static const double middle[2] = { 1 / 3.0, 1 / 3.0 };
     const uint32_t first = geometry->shading_point_prims[number];
-    s->prim = geometry->places[first];
+    s->prim = geometry->index_of_id[first];
     const glint_prim *prim = &geometry->prims[s->prim];
     area_of(prim, geometry->table.scale, s->normal);
     if (vec_max_abs(s->normal) > 0)
@@ -220,7 +221,7 @@ static void prefetch_prim(const glint_geometry *geometry, uint32_t number)
 {
     const uint32_t first = geometry->shading_point_prims[number];
     if (first != GLINT_MISS)
-        __builtin_prefetch(&geometry->prims[geometry->places[first]]);
+        __builtin_prefetch(&geometry->prims[geometry->index_of_id[first]]);
 }
 
 /// Loads the points of a block into the arrays. The backs of one-sided surfaces have no light.

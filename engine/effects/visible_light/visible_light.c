@@ -275,7 +275,7 @@ void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *fram
         }
 }
 
-static glint_key place_key(const glint_plan_visible_light *visible_light, glint_key key)
+static glint_key position_key(const glint_plan_visible_light *visible_light, glint_key key)
 {
     const double kind[] = { visible_light->ball, visible_light->one_sided, visible_light->radius,
                             (double)visible_light->edge_count };
@@ -286,10 +286,10 @@ static glint_key place_key(const glint_plan_visible_light *visible_light, glint_
 }
 
 /// Hashes the places of visible lights; their brightness belongs to the background.
-static glint_key places_key(const glint_plan *plan, glint_key key)
+static glint_key positions_key(const glint_plan *plan, glint_key key)
 {
     for (uint32_t i = 0; i < plan->visible_light_count; i++)
-        key = place_key(&plan->visible_lights[i], key);
+        key = position_key(&plan->visible_lights[i], key);
     return key;
 }
 
@@ -308,7 +308,7 @@ const glint_stage glint_stage_visible_light = {
     .name = "visible_lights",
     .doc = "which rays see a light before any object",
     .called = called,
-    .own = places_key,
+    .own = positions_key,
     .reads = GLINT_READS_OWN(VISIBLE_LIGHT),
     .sums = true,
     .remote = true,

@@ -143,16 +143,16 @@ INNER void R(load3)(const void *const v[3], size_t at, vr out[3])
 }
 
 /// A group, and its position among the camera's groups.
-typedef struct R(group_place) {
+typedef struct R(group_cursor) {
     uint32_t g, x, y;
-} R(group_place);
+} R(group_cursor);
 
-INNER void R(next_group)(const glint_camera_args *camera, R(group_place) * place)
+INNER void R(next_group)(const glint_camera_args *camera, R(group_cursor) * cursor)
 {
-    place->g++;
-    if (camera && ++place->x == camera->groups_across) {
-        place->x = 0;
-        place->y++;
+    cursor->g++;
+    if (camera && ++cursor->x == camera->groups_across) {
+        cursor->x = 0;
+        cursor->y++;
     }
 }
 

@@ -9,41 +9,41 @@
 static inline vr R(unless_within)(vr x, vr bound) { return r_select(r_le(r_max(x, -x), bound), r_set(0), x); }
 
 /// Returns the height of a point over a face.
-static inline vr R(face_height)(const glint_face *face, const vr place[3])
+static inline vr R(face_height)(const glint_face *face, const vr point[3])
 {
     const vr n[3] = { r_set(face->normal[0]), r_set(face->normal[1]), r_set(face->normal[2]) };
     if (face->axis == 0)
-        return n[0] * (place[0] - r_set(face->at[0]));
+        return n[0] * (point[0] - r_set(face->at[0]));
     if (face->axis == 1)
-        return n[1] * (place[1] - r_set(face->at[1]));
+        return n[1] * (point[1] - r_set(face->at[1]));
     if (face->axis == 2)
-        return n[2] * (place[2] - r_set(face->at[2]));
-    const vr q[3] = { place[0] - r_set(face->at[0]), place[1] - r_set(face->at[1]), place[2] - r_set(face->at[2]) };
-    return R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(face->places));
+        return n[2] * (point[2] - r_set(face->at[2]));
+    const vr q[3] = { point[0] - r_set(face->at[0]), point[1] - r_set(face->at[1]), point[2] - r_set(face->at[2]) };
+    return R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(face->magnitude));
 }
 
 /// Computes the same as over_slab for a pair of parallel faces that are perpendicular to axis k, a constant.
-INNER vr R(over_level_slab)(const glint_face *low, const int k, const vr *place, const vr d[3], vr height[2])
+INNER vr R(over_level_slab)(const glint_face *low, const int k, const vr *point, const vr d[3], vr height[2])
 {
     const vr n = r_set(low->normal[k]);
-    for (int i = 0; i < 2 && place; i++)
-        height[i] = n * (place[k] - r_set(low[i].at[k]));
+    for (int i = 0; i < 2 && point; i++)
+        height[i] = n * (point[k] - r_set(low[i].at[k]));
     return n * d[k];
 }
 
 /// Returns how fast rays rise over the faces low[0] and low[1], which have the same normal. Also computes the heights
-/// of their origin, `place`, over both. place: NULL: no heights are wanted.
-INNER vr R(over_slab)(const glint_face *low, const vr *place, const vr d[3], vr height[2])
+/// of their origin, `point`, over both. point: NULL: no heights are wanted.
+INNER vr R(over_slab)(const glint_face *low, const vr *point, const vr d[3], vr height[2])
 {
     if (low->axis < 3)
-        return low->axis == 0   ? R(over_level_slab)(low, 0, place, d, height)
-               : low->axis == 1 ? R(over_level_slab)(low, 1, place, d, height)
-                                : R(over_level_slab)(low, 2, place, d, height);
+        return low->axis == 0   ? R(over_level_slab)(low, 0, point, d, height)
+               : low->axis == 1 ? R(over_level_slab)(low, 1, point, d, height)
+                                : R(over_level_slab)(low, 2, point, d, height);
     const vr n[3] = { r_set(low->normal[0]), r_set(low->normal[1]), r_set(low->normal[2]) };
-    for (int i = 0; i < 2 && place; i++) {
+    for (int i = 0; i < 2 && point; i++) {
         const double *at = low[i].at;
-        const vr q[3] = { place[0] - r_set(at[0]), place[1] - r_set(at[1]), place[2] - r_set(at[2]) };
-        height[i] = R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(low[i].places));
+        const vr q[3] = { point[0] - r_set(at[0]), point[1] - r_set(at[1]), point[2] - r_set(at[2]) };
+        height[i] = R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(low[i].magnitude));
     }
     return DOT(n, d);
 }

@@ -41,8 +41,8 @@ INNER uint64_t R(groups_behind)(const R(tile_cast) * tile, const bool gathered, 
 /// Returns the group of the lowest bit.
 INNER R(tile_group) R(lowest_group)(const R(tile_cast) * tile, const bool gathered, uint64_t groups)
 {
-    const int place = __builtin_ctzll(groups), x = gathered ? 0 : place % COVER_ACROSS,
-              y = gathered ? place : place / COVER_ACROSS;
+    const int slot = __builtin_ctzll(groups), x = gathered ? 0 : slot % COVER_ACROSS,
+              y = gathered ? slot : slot / COVER_ACROSS;
     return (R(tile_group)) { x, y, y * tile->across + x, gathered ? tile->pixels->s[y] : tile->s[x],
                              gathered ? tile->pixels->t[y] : tile->t[y] };
 }

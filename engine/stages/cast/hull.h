@@ -125,8 +125,8 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
             continue;
         if ((!prim->face || on_hull) && t[i] <= near && -near <= t[i]) {
             const R(flat) flat = R(flat_of)(prim, rays->table->scale);
-            const real place[3] = { rays->origin[0][i], rays->origin[1][i], rays->origin[2][i] };
-            begun = R(is_in_plane)(&flat, place, on_surface) || begun;
+            const real point[3] = { rays->origin[0][i], rays->origin[1][i], rays->origin[2][i] };
+            begun = R(is_in_plane)(&flat, point, on_surface) || begun;
         }
         if (begun) {
             R(note_triangle)(rays->of[i].begun, orientation, index);

@@ -128,20 +128,20 @@ static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_
 
 /// Computes the origin of the ray of a pair. own, a constant here and below: each ray has its own origin; otherwise
 /// all start at the eye.
-INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real place[3])
+INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real ray_origin[3])
 {
     for (int k = 0; k < 3; k++)
-        place[k] = own ? leaf->origin[k][n] : (real)tile->args->camera->eye[k];
+        ray_origin[k] = own ? leaf->origin[k][n] : (real)tile->args->camera->eye[k];
 }
 
 /// Returns whether the ray of a pair starts in the plane of a triangle.
 INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n,
                               const glint_prim *prim)
 {
-    real place[3];
-    R(start_of_pair)(tile, leaf, own, n, place);
+    real ray_origin[3];
+    R(start_of_pair)(tile, leaf, own, n, ray_origin);
     const R(flat) flat = R(flat_of)(prim, tile->args->geometry->scale);
-    return R(is_in_plane)(&flat, place, false);
+    return R(is_in_plane)(&flat, ray_origin, false);
 }
 
 /// Corrects the hits of pairs from i on. Triangles that share their planes with others are decided again; `through`:
@@ -156,9 +156,9 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
         if (!(leaf->faced >> leaf->slot[n] & 1))
             continue;
         const glint_prim *prim = &table->prims[leaf->node->child[leaf->slot[n]] & ~GLINT_NODE_PRIM];
-        real place[3];
-        R(start_of_pair)(tile, leaf, own, n, place);
-        const vr o[3] = { r_set(place[0]), r_set(place[1]), r_set(place[2]) };
+        real ray_origin[3];
+        R(start_of_pair)(tile, leaf, own, n, ray_origin);
+        const vr o[3] = { r_set(ray_origin[0]), r_set(ray_origin[1]), r_set(ray_origin[2]) };
         const vr d[3] = { r_set(leaf->direction[0][n]), r_set(leaf->direction[1][n]), r_set(leaf->direction[2][n]) };
         leaf->t[n] = R(first_lane)(R(face_t)(R(face_of)(table, prim), o, d));
         hits = 0 < leaf->t[n] ? hits | lane : hits & ~lane;

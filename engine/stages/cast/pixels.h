@@ -78,8 +78,8 @@ static void R(place_pixels)(const R(tile_cast) * tile, uint32_t g)
     R(narrow)(s, pixels->s[g]);
     R(narrow)(t, pixels->t[g]);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vi column = cell_of_place(&tile->view, 0, f_load(pixels->s[g] + i));
-        const vi row = cell_of_place(&tile->view, 1, -f_load(pixels->t[g] + i));
+        const vi column = screen_cell(&tile->view, 0, f_load(pixels->s[g] + i));
+        const vi row = screen_cell(&tile->view, 1, -f_load(pixels->t[g] + i));
         i_store(pixels->cell[g] + i, i_or(i_shl(row, 4), column));
     }
     pixels->starts[g] = 1;
@@ -101,7 +101,7 @@ static void R(cast_planes_to_pixels)(R(tile_cast) * tile)
             for (int i = 0; i < GLINT_GROUP; i += VF) {
                 const vf s = f_load(pixels->s[g] + i), t = f_load(pixels->t[g] + i);
                 const vf length2 = s * s * f_set(tile->rr) + (f_set(1) + t * t * f_set(tile->uu));
-                near |= R(near_places)(&candidate, s, t, length2) << i;
+                near |= R(near_positions)(&candidate, s, t, length2) << i;
             }
             near &= tile->args->active[g];
             if (near)

@@ -32,8 +32,8 @@ typedef struct R(permuted_rays) {
 /// The nodes that a ray has yet to visit, and where it enters them.
 typedef struct R(node_stack) {
     int height;
-    uint32_t
-        node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX]; ///< with space for the entries behind the packed
+    /// With space for the entries behind the packed
+    uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX];
     float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX];
 } R(node_stack);
 

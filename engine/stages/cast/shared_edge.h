@@ -60,10 +60,10 @@ static inline real R(size_of_all)(const real v[3])
 
 /// Returns whether a point is in the triangle's plane within rounding. on_surface: the point is on some surface, and
 /// has the rounding error of such points.
-static inline bool R(is_in_plane)(const R(flat) * flat, const real place[3], bool on_surface)
+static inline bool R(is_in_plane)(const R(flat) * flat, const real point[3], bool on_surface)
 {
     real rounding;
-    const real h = R(height_over)(flat, place, &rounding), off = (real)GLINT_POINT_SLACK * R(size_of_all)(place);
+    const real h = R(height_over)(flat, point, &rounding), off = (real)GLINT_POINT_SLACK * R(size_of_all)(point);
     return R(size_of)(h) <= (on_surface ? rounding + R(spread_of)(flat) * off : rounding);
 }
 
@@ -88,8 +88,8 @@ static inline rm R(unless_begun_on)(const glint_geometry_table *table, const gli
         r_store(origin[k], o[k]);
     for (; soon; soon &= soon - 1) {
         const int j = __builtin_ctz(soon);
-        const real place[3] = { origin[0][j], origin[1][j], origin[2][j] };
-        if (R(is_in_plane)(&flat, place, leaving && leaving[j] != GLINT_MISS))
+        const real start[3] = { origin[0][j], origin[1][j], origin[2][j] };
+        if (R(is_in_plane)(&flat, start, leaving && leaving[j] != GLINT_MISS))
             on |= soon & -soon;
     }
     return rm_andnot(hit, rm_from_bits(on));
@@ -101,8 +101,8 @@ static inline bool R(reaches)(const R(flat) * flat, real side, const R(flat) * o
 {
     for (int j = 0; j < 3; j++) {
         real rounding;
-        const real h = R(height_over)(flat, other->corner[j], &rounding), place = R(size_of_all)(other->corner[j]);
-        const real off = rounding + R(spread_of)(flat) * ((real)GLINT_POINT_SLACK * place);
+        const real h = R(height_over)(flat, other->corner[j], &rounding), extent = R(size_of_all)(other->corner[j]);
+        const real off = rounding + R(spread_of)(flat) * ((real)GLINT_POINT_SLACK * extent);
         if (off < R(size_of)(h) && ((0 < side && 0 < h) || (side < 0 && h < 0)))
             return true;
     }

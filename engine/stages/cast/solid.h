@@ -38,17 +38,17 @@ static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *pr
 /// The constants of a solid that depend on the rays' origins.
 typedef struct R(solid_start) {
     vr f[3]; ///< from the centre, in the space of the unit shape; unused for a box
-    const vr *place; ///< the rays' origins
+    const vr *origin; ///< the rays' origins
     const real *height; ///< over the faces, for rays with one origin; NULL: computed when slabs are cut
 } R(solid_start);
 
-static inline void R(start_at)(const glint_solid *solid, const glint_prim *prim, const vr place[3],
+static inline void R(start_at)(const glint_solid *solid, const glint_prim *prim, const vr origin[3],
                                R(solid_start) * start)
 {
-    start->place = place;
+    start->origin = origin;
     start->height = NULL;
     if (solid->form != GLINT_FORM_BOX)
-        R(unit_offset)(solid, prim, place, start->f);
+        R(unit_offset)(solid, prim, origin, start->f);
 }
 
 static inline real R(first_lane)(vr x)
@@ -62,13 +62,13 @@ static inline real R(first_lane)(vr x)
 static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, const double eye[3], real f[3],
                             real height[6])
 {
-    const vr place[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+    const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     vr offset[3];
-    R(unit_offset)(solid, prim, place, offset);
+    R(unit_offset)(solid, prim, origin, offset);
     for (int k = 0; k < 3; k++)
         f[k] = R(first_lane)(offset[k]);
     for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
-        height[i] = R(first_lane)(R(face_height)(&solid->faces[i], place));
+        height[i] = R(first_lane)(R(face_height)(&solid->faces[i], origin));
 }
 
 /// Clips the span to a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
@@ -78,7 +78,8 @@ INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(soli
 {
     const vr zero = r_set(0);
     vr height[2] = { zero, zero };
-    const vr rise = R(over_slab)(solid->faces + 2 * slab, start->height ? NULL : start->place, d, height), fall = -rise;
+    const vr rise = R(over_slab)(solid->faces + 2 * slab, start->height ? NULL : start->origin, d, height),
+             fall = -rise;
     const vr below = start->height ? r_set(start->height[2 * slab]) : height[0],
              above = start->height ? r_set(start->height[2 * slab + 1]) : height[1];
     const rm rising = r_lt(zero, rise), parallel = r_eq(rise, zero);
@@ -119,7 +120,7 @@ INNER void R(cut_by_ends)(R(span) * span, const glint_solid *solid, const R(soli
 INNER void R(cut_by_disk)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3],
                           const vr e[3])
 {
-    const vr height = start->height ? r_set(start->height[0]) : R(face_height)(solid->faces, start->place);
+    const vr height = start->height ? r_set(start->height[0]) : R(face_height)(solid->faces, start->origin);
     const vr t = -height / R(face_rise)(solid->faces, d);
     const vr x = start->f[0] + t * e[0], y = start->f[1] + t * e[1];
     span->t[0] = span->t[1] = t;
@@ -135,8 +136,8 @@ typedef struct R(quadratic) {
     rm ahead, along; ///< b >= 0; parallel to the axis of a cylinder: fully inside or outside
 } R(quadratic);
 
-/// Computes the roots for a sphere (three axes) or cylinder (two). places: of the solid.
-INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, double places)
+/// Computes the roots for a sphere (three axes) or cylinder (two). magnitude: of the solid.
+INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, double magnitude)
 {
     const vr zero = r_set(0), one = r_set(1);
     vr a = e[0] * e[0] + e[1] * e[1], b = f[0] * e[0] + f[1] * e[1], c = f[0] * f[0] + f[1] * f[1];
@@ -150,7 +151,7 @@ INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, doub
         cross = (x * x + y * y) + z * z;
     }
     b = -b;
-    c = R(unless_within)(c - one, r_set(GLINT_ON_FACE) * r_set(places));
+    c = R(unless_within)(c - one, r_set(GLINT_ON_FACE) * r_set(magnitude));
     const rm near = r_lt(b * b, a);
     const vr disc = r_select(near, b * b - a * c, a - cross);
     const vr s = r_sqrt(r_max(disc, zero));
@@ -158,9 +159,9 @@ INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, doub
     return (R(quadratic)) { a, b, c, disc, s, r_select(ahead, b + s, b - s), ahead, along };
 }
 
-INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball, double places)
+INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball, double magnitude)
 {
-    const R(quadratic) round = R(quadratic_of)(f, e, ball, places);
+    const R(quadratic) round = R(quadratic_of)(f, e, ball, magnitude);
     const vr far = round.q / round.a, other = round.c / round.q, zero = r_set(0);
     // in order despite rounding: a solid seen from far away may be thinner than the rounding error
     span->t[0] = r_select(round.along, r_set(-HUGE_VAL), r_min(far, other));
@@ -174,11 +175,11 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
 /// too few digits are left: for rays from far away, and for rays down the side of either half that pass the apex at
 /// no more than about a third of their origin's distance from it. Such rays restart at the point nearest to the apex,
 /// except for rays that start on the side.
-INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double places)
+INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double magnitude)
 {
     const vr zero = r_set(0), toward = DOT(from, e), e2 = DOT(e, e), away2 = DOT(from, from);
     const vr side = (from[0] * from[0] + from[1] * from[1]) - from[2] * from[2];
-    const vr off = r_set(GLINT_POINT_SLACK) * away2 + (r_set(GLINT_ON_FACE) * r_set(places)) * from[2];
+    const vr off = r_set(GLINT_POINT_SLACK) * away2 + (r_set(GLINT_ON_FACE) * r_set(magnitude)) * from[2];
     const rm far_off = r_lt(r_set(16), away2), passes = r_lt(r_set(0.875) * (away2 * e2), toward * toward);
     const rm on = rm_andnot(rm_and(r_lt(zero, from[2]), r_le(r_max(side, -side), off)), far_off);
     const vr move = r_select(rm_or(far_off, rm_andnot(passes, on)), -toward / e2, zero);
@@ -231,16 +232,16 @@ INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start,
              .face = { zero, zero } };
     switch (solid->form) {
     case GLINT_FORM_BALL:
-        R(cut_round)(&span, f, e, true, solid->places);
+        R(cut_round)(&span, f, e, true, solid->magnitude);
         break;
     case GLINT_FORM_CYLINDER:
     case GLINT_FORM_TUBE:
-        R(cut_round)(&span, f, e, false, solid->places);
+        R(cut_round)(&span, f, e, false, solid->magnitude);
         R(cut_by_ends)(&span, solid, start, d, faces, whole);
         break;
     case GLINT_FORM_CONE:
     case GLINT_FORM_FUNNEL:
-        R(cut_cone)(&span, f, e, solid->places);
+        R(cut_cone)(&span, f, e, solid->magnitude);
         R(cut_by_ends)(&span, solid, start, d, faces, whole);
         break;
     case GLINT_FORM_BOX:

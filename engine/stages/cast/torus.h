@@ -82,7 +82,7 @@ static inline void R(find_turns)(R(torus_line) * l, vr last)
 static inline void R(begin_on_torus)(R(torus_line) * l, const glint_solid *solid, const vr f[3], const vr e[3],
                                      R(torus_start) start)
 {
-    const vr zero = r_set(0), one = r_set(1), within = r_set(GLINT_ON_FACE) * r_set(solid->places);
+    const vr zero = r_set(0), one = r_set(1), within = r_set(GLINT_ON_FACE) * r_set(solid->magnitude);
     const vr round = r_sqrt(f[0] * f[0] + f[1] * f[1]);
     vr beyond;
     l->begin_gap = R(torus_gap)(f, l->tube2, &beyond);
@@ -149,7 +149,8 @@ static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], cons
     for (int c = 0; c < 3; c++)
         l->u[c] = e[c] * l->per;
     l->reach = r_sqrt(r_max(half2, zero));
-    l->near = rm_and(l->near, rm_or(start.leaves, R(passes_tube)(l, r_set(2 * GLINT_ON_FACE) * r_set(solid->places))));
+    l->near =
+        rm_and(l->near, rm_or(start.leaves, R(passes_tube)(l, r_set(2 * GLINT_ON_FACE) * r_set(solid->magnitude))));
     l->bend = ((away2 + one) - l->tube2) - two * (l->u[0] * l->u[0] + l->u[1] * l->u[1]);
     l->lean = -two * (l->p[2] * l->u[2]);
 }

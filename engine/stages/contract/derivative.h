@@ -36,7 +36,7 @@ typedef struct glint_derivative_light {
 typedef struct glint_derivative_part {
     uint32_t moves;
     uint32_t unused; ///< 0: no padding
-    double place[3]; ///< of a sphere's centre or a plane's point
+    double position[3]; ///< of a sphere's centre or a plane's point
     double growth; ///< of a sphere's radius, relative to the radius
     double normal[3]; ///< of a plane's unit normal
     double pivot[3]; ///< the fixed point around which a plane turns
@@ -119,7 +119,7 @@ typedef struct glint_bend_args {
     const glint_bend_camera *camera;
     /// The position of a sample in the picture, in half pixels from the centre, right and up; NULL: seen from a
     /// point.
-    const double *place[2];
+    const double *screen[2];
     const double *shift[3], *shift_slope[3]; ///< the position of the sample on the lens
     double *slope[3][3]; ///< out, in every lane: slopes of points, normals and eye vectors
 } glint_bend_args;

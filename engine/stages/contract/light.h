@@ -63,8 +63,8 @@ typedef struct glint_light_args {
     const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it; not read for area lights
-    const double *place[GLINT_LIGHT_CHUNK]; ///< for several lights, without samples or cones, that differ only in
-        ///< position: the position of each; place[0] NULL: one light, at `position`
+    const double *positions[GLINT_LIGHT_CHUNK]; ///< for several lights, without samples or cones, that differ only in
+        ///< position: the position of each; positions[0] NULL: one light, at `position`
     double
         scale; ///< a power of two that brings distances to the light, and for radiant lamps their size, near 1; 1 if
         ///< they are near enough already
@@ -122,7 +122,7 @@ typedef struct glint_facet_args {
 
 // ---- occlude: which points a light reaches ----
 
-#define GLINT_GRID_STEPS 6144 ///< steps of `place` per cell of a light's grid
+#define GLINT_GRID_STEPS 6144 ///< steps of `center` per cell of a light's grid
 #define GLINT_GRID_ASIDE 4.5 ///< cells: the position of an entry is at most this far before or behind its cell
 #define GLINT_GRID_RADIUS 8 ///< steps per unit of an entry's radius
 #define GLINT_GRID_RADIUS_BITS 12 ///< lower bits of an entry's size, which hold the radius
@@ -142,7 +142,7 @@ typedef struct glint_light_grid {
     bool sorted; ///< in each cell the entries are in order of `near`
     const uint32_t *begin; ///< where each cell's entries begin, row by row, and the end of the last cell
     // for each entry, a sphere in a cell, and GLINT_GROUP undefined entries more:
-    const uint32_t *place; ///< of the sphere's centre, in steps from GLINT_GRID_ASIDE before its cell: across + 2^16
+    const uint32_t *center; ///< of the sphere's centre, in steps from GLINT_GRID_ASIDE before its cell: across + 2^16
         ///< down
     const uint32_t *size; ///< radius, and `near` in the bits above. A segment that hits the sphere has du^2 + dv^2 <=
         ///< radius^2 (1 + u^2 + v^2), at its own projected position; directional: <= radius^2. All points that the

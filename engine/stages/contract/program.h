@@ -113,7 +113,7 @@ typedef struct glint_unit_args {
         ///< `from`
     const uint32_t *groups; ///< as in the camera's arguments
     const double *to[3]; ///< 16 numbers per group
-    const double *place; ///< x, y, z: `to` of every lane; NULL: `to` is an array
+    const double *position; ///< x, y, z: `to` of every lane; NULL: `to` is an array
     const double *from[3]; ///< 16 numbers per group; NULL: d = to
     double *unit[3]; ///< out; may be the memory of `to` or `from`
     double *length; ///< out; NULL: not wanted

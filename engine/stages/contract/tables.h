@@ -141,7 +141,7 @@ typedef enum glint_form {
 typedef struct glint_face {
     double normal[3]; ///< unit
     double at[3]; ///< a point of the plane
-    double places; ///< |normal| . (bound of |x| on the surface + |at|): the magnitude of the terms of a height
+    double magnitude; ///< |normal| . (bound of |x| on the surface + |at|): the magnitude of the terms of a height
     uint32_t axis; ///< the axis of the world that the normal is along; 3: none
 } glint_face;
 
@@ -150,8 +150,8 @@ typedef struct glint_solid {
     double inverse[3][3], forward[3][3]; ///< rows
     const glint_face *faces; ///< box: of low x, high x, low y, high y, low z, high z; cylinder, cone, disk and the open
         ///< forms: of low z, high z (the same for a disk); ball, torus: NULL. Normals point from low to high
-    double places; ///< sphere, cylinder, cone: bound of the terms of x^2 + y^2 - 1 (or similar) for points on the side;
-        ///< torus: bound of the terms of the distance from the circle in the middle of its tube
+    double magnitude; ///< sphere, cylinder, cone: bound of the terms of x^2 + y^2 - 1 (or similar) for points on the
+        ///< side; torus: bound of the terms of the distance from the circle in the middle of its tube
     double tube; ///< torus: radius of its tube in the space in which the radius of that circle is 1; above 0 and below
         ///< 1
     float lower[3], upper[3]; ///< a bounding box in the index's frame, rounded outwards; undefined for a part
@@ -215,30 +215,31 @@ static inline int glint_axis_along(const double v[3])
 #define GLINT_ON_FACE_FLOAT 0x1p-21
 
 /// Returns the height of a point over a face; 0 if it is on the face within rounding.
-static inline double glint_face_height(const glint_face *face, const double place[3])
+static inline double glint_face_height(const glint_face *face, const double point[3])
 {
     double q[3];
     for (int c = 0; c < 3; c++)
-        q[c] = place[c] - face->at[c];
+        q[c] = point[c] - face->at[c];
     if (face->axis < 3)
         return face->normal[face->axis] * q[face->axis];
     const double h = (face->normal[0] * q[0] + face->normal[1] * q[1]) + face->normal[2] * q[2];
-    const double on = GLINT_ON_FACE_DOUBLE * face->places;
+    const double on = GLINT_ON_FACE_DOUBLE * face->magnitude;
     return h <= on && -on <= h ? 0 : h;
 }
 
 /// Returns whether a point is inside of, not on, the solid around `center`; always false for a disk, tube or funnel.
-static inline bool glint_solid_holds(const glint_solid *solid, const double center[3], const double place[3])
+static inline bool glint_solid_holds(const glint_solid *solid, const double center[3], const double point[3])
 {
     double k[3];
     for (int i = 0; i < glint_slab_count(solid->form); i++)
-        if (!(glint_face_height(&solid->faces[2 * i], place) > 0 && glint_face_height(&solid->faces[2 * i + 1], place) < 0))
+        if (!(glint_face_height(&solid->faces[2 * i], point) > 0 &&
+              glint_face_height(&solid->faces[2 * i + 1], point) < 0))
             return false;
     if (solid->form == GLINT_FORM_BOX)
         return true;
     for (int c = 0; c < 3; c++) {
         const double *row = solid->inverse[c];
-        k[c] = (row[0] * (place[0] - center[0]) + row[1] * (place[1] - center[1])) + row[2] * (place[2] - center[2]);
+        k[c] = (row[0] * (point[0] - center[0]) + row[1] * (point[1] - center[1])) + row[2] * (point[2] - center[2]);
     }
     const double round = k[0] * k[0] + k[1] * k[1], z = k[2];
     switch (solid->form) {

@@ -36,7 +36,8 @@ INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int 
 {
     const glint_derivative_view *view = args->view;
     const glint_bend_camera *camera = args->camera;
-    const vd x = d_load(args->place[0] + i), y = d_load(args->place[1] + i), zero = d_set(0), near = d_set(camera->near);
+    const vd x = d_load(args->screen[0] + i), y = d_load(args->screen[1] + i), zero = d_set(0),
+             near = d_set(camera->near);
     bent_rays out;
     vd seen[3];
     for (int c = 0; c < 3; c++) {
@@ -67,7 +68,7 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
         off[c] = point - d_set(prim->center[c]);
         gradient[c] = d_either(round, off[c], d_set(round ? 0 : prim->normal[c]));
         carried[c] = rays->moved[c] + rays->far * rays->turned[c];
-        rest = rest + gradient[c] * ((d_set(part->place[c]) - carried[c]) + d_set(part->growth) * off[c]);
+        rest = rest + gradient[c] * ((d_set(part->position[c]) - carried[c]) + d_set(part->growth) * off[c]);
         if (!round)
             rest = rest - d_set(part->normal[c]) * (point - d_set(part->pivot[c]));
     }
@@ -78,7 +79,7 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->direction[c];
-        const vd offset = (moved - d_set(part->place[c])) - off[c] * d_set(part->growth);
+        const vd offset = (moved - d_set(part->position[c])) - off[c] * d_set(part->growth);
         out[0][c] = moved;
         out[1][c] = d_either(round, offset * curved, side * d_set(part->normal[c]));
         out[2][c] = (away * eye[c] - rays->turned[c]) * shorter;
@@ -99,7 +100,7 @@ INNER void bend_group(const glint_bend_args *args, const bool along, const bool 
 
 static void bend(const glint_bend_args *args)
 {
-    const bool along = args->place[0], parallel = along && args->camera->orthographic;
+    const bool along = args->screen[0], parallel = along && args->camera->orthographic;
     const bool round = args->prim->kind == GLINT_PRIM_SPHERE;
     if (parallel && round)
         bend_group(args, true, true, true);

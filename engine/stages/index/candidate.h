@@ -295,7 +295,7 @@ static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidat
 }
 
 /// Returns the lanes that pass near the candidate, at screen positions s and t; length2: |direction|^2.
-INNER unsigned R(near_places)(const R(candidate) * candidate, vf s, vf t, vf length2)
+INNER unsigned R(near_positions)(const R(candidate) * candidate, vf s, vf t, vf length2)
 {
     vf v[3];
     for (int k = 0; k < 3; k++)
@@ -310,8 +310,8 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
 {
     unsigned near = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF)
-        near |= R(near_places)(candidate, f_load(tile->s[x] + i), f_load(tile->t[y] + i),
-                               f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i))
+        near |= R(near_positions)(candidate, f_load(tile->s[x] + i), f_load(tile->t[y] + i),
+                                  f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i))
                 << i;
     return near;
 }

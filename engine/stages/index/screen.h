@@ -52,9 +52,9 @@ static void finish_screen(screen_view *view)
 
 /// Returns the cell of a position along an axis. The map is monotonic, so that positions between two others are in
 /// cells between theirs.
-static inline vi cell_of_place(const screen_view *view, int axis, vf place)
+static inline vi screen_cell(const screen_view *view, int axis, vf position)
 {
-    const vf cell = (place - f_set(view->first[axis])) * f_set(view->cells[axis]);
+    const vf cell = (position - f_set(view->first[axis])) * f_set(view->cells[axis]);
     return i_from_f(f_min(f_max(cell, f_set(0)), f_set((float)(view->count[axis] - 1))));
 }
 
@@ -77,7 +77,7 @@ typedef struct node_on_screen {
 /// the bounds are infinite, or, if the box lies to one side of the eye, begin at its position at `farthest`. In that
 /// range the lines of all rays must miss the boxes behind the eye, too: for a triangle seen edge-on, rounding may
 /// turn a hit behind the eye into a hit ahead. start, end: bounds of the screen's positions.
-static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf start, vf end, vf *least, vf *most)
+static inline void project_boxes(vf low, vf high, vf nearest, vf farthest, vf start, vf end, vf *least, vf *most)
 {
     const fm ahead = f_lt(f_set(0), nearest);
     const vf near = f_set(1) / nearest, far = f_set(1) / farthest, lowest = low * far, highest = high * far;
@@ -139,12 +139,12 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
                 high[j] = high[j] + f_set(lens->reach[j]) * around;
             }
             if (!parallel)
-                places_of_boxes(low[j], high[j], nearest, farthest, start - margin, end + margin, &low[j], &high[j]);
+                project_boxes(low[j], high[j], nearest, farthest, start - margin, end + margin, &low[j], &high[j]);
             least = low[j] - margin;
             most = high[j] + margin;
             away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
-            cells = i_or(i_shl(cells, 16), i_or(cell_of_place(view, j, f_max(least, start)),
-                                                i_shl(cell_of_place(view, j, f_min(most, end)), 8)));
+            cells = i_or(i_shl(cells, 16), i_or(screen_cell(view, j, f_max(least, start)),
+                                                i_shl(screen_cell(view, j, f_min(most, end)), 8)));
         }
         i_store(out->cells + i, cells);
         inside |= fm_bits(fm_andnot(box_exists(node, i), away)) << i;

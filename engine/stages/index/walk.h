@@ -51,10 +51,10 @@ static inline void loosen(float lower[3], float upper[3], float slack)
 }
 
 /// The position of a light, in the index's frame.
-typedef struct light_place {
+typedef struct light_bounds {
     float lower[3], upper[3]; ///< directional: both are the direction towards the light
     bool directional;
-} light_place;
+} light_bounds;
 
 typedef struct light_shaft {
     float lower[3], upper[3]; ///< the bounding box of the shaft; infinite where it is unbounded
@@ -80,7 +80,7 @@ static inline void beside_line(int a, int b, float x, float y, float ex, float e
 /// Adds a plane of the axes a, b through (x, y) along (ex, ey), if the points and the light are on one side of it.
 /// `wide`: the light is not a point.
 static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
-                                   const float lower[3], const float upper[3], const light_place *light, bool wide)
+                                   const float lower[3], const float upper[3], const light_bounds *light, bool wide)
 {
     float least, most, light_least = 0, light_most = 0;
     beside_line(a, b, x, y, ex, ey, lower, upper, &least, &most);
@@ -108,7 +108,7 @@ static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, fl
 
 /// Adds the planes of one pair of axes: the lines that touch the rectangles of the points and of the light.
 static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const float lower[3], const float upper[3],
-                                    const light_place *light)
+                                    const light_bounds *light)
 {
     const int last_a = light->lower[a] != light->upper[a], last_b = light->lower[b] != light->upper[b];
     for (int corner = 0; corner < 4; corner++) {
@@ -123,7 +123,7 @@ static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const floa
 }
 
 /// Makes a shaft. lower, upper: box of the points, in the index's frame.
-static void make_shaft(const float lower[3], const float upper[3], const light_place *light, light_shaft *shaft)
+static void make_shaft(const float lower[3], const float upper[3], const light_bounds *light, light_shaft *shaft)
 {
     shaft->plane_count = 0;
     for (int k = 0; k < 3; k++) {

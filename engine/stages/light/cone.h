@@ -91,11 +91,12 @@ static __attribute__((noinline)) void R(place_in_cone)(const glint_light_sample 
             R(store_exact)(set->far[s] + i, far);
             for (int k = 0; k < 3; k++) {
                 const vd hit = cone.point[k] + direction[k] * far;
-                const vd place = d_min(d_max(hit, d_set(light_sample[0]->lower[k])), d_set(light_sample[0]->upper[k]));
-                d_store(set->place[s][k] + i, place);
+                const vd position =
+                    d_min(d_max(hit, d_set(light_sample[0]->lower[k])), d_set(light_sample[0]->upper[k]));
+                d_store(set->exact_position[s][k] + i, position);
                 R(store_exact)(set->direction[s][k] + i, direction[k]);
 #if GLINT_REAL == 32
-                R(store_exact)(set->rounded[s][0][k] + i, place);
+                R(store_exact)(set->rounded[s][0][k] + i, position);
 #endif
             }
         }

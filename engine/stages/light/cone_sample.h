@@ -8,7 +8,7 @@
 
 typedef struct glint_cone_sample {
     double direction[3], far; ///< from the point to the sample: unit direction, and distance
-    double place[3];
+    double position[3];
     double weight; ///< the solid angle over pi
 } glint_cone_sample;
 
@@ -59,7 +59,7 @@ static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sa
     for (int k = 0; k < 3; k++) {
         const double hit = point[k] + out.direction[k] * out.far,
                      above = hit > light_sample->lower[k] ? hit : light_sample->lower[k];
-        out.place[k] = above < light_sample->upper[k] ? above : light_sample->upper[k];
+        out.position[k] = above < light_sample->upper[k] ? above : light_sample->upper[k];
     }
     return out;
 }

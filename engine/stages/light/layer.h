@@ -34,14 +34,14 @@ typedef struct layer_frame {
 } layer_frame;
 
 /// The lanes of the groups of all samples that cross the rectangle, and their cells.
-typedef struct layer_places {
+typedef struct layer_cells {
     uint16_t within[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
     _Alignas(64) uint32_t cell[LAYER_RAYS];
-} layer_places;
+} layer_cells;
 
 /// The segments that cross a rectangle of a layer's plane, in the order of cells, row by row.
 typedef struct layer_rays {
-    layer_places places; ///< before they are sorted
+    layer_cells unsorted; ///< before they are sorted
     float first[2], last[2], cells[2]; ///< the rectangle; cells per unit
     _Alignas(64) float base[2][LAYER_RAYS + GLINT_GROUP], slope[2][LAYER_RAYS + GLINT_GROUP];
     _Alignas(64) float from[LAYER_RAYS + GLINT_GROUP]; ///< h of the point; +inf for blocked segments
@@ -70,7 +70,7 @@ static inline layer_lanes lanes_of_layer(const layer_frame *frame, uint32_t s, s
 
 /// Computes axes along the line from the middle of the points to the middle of the light. Returns false if these
 /// coincide.
-static bool make_layer_axes(const float lower[3], const float upper[3], const light_place *light, layer_frame *frame)
+static bool make_layer_axes(const float lower[3], const float upper[3], const light_bounds *light, layer_frame *frame)
 {
     double offset[3], across[3], down[3], least[3] = { 0, 0, 0 };
     int k = 0;
@@ -118,12 +118,12 @@ static inline vi cell_in_layer(const layer_rays *rays, int j, vf x)
 static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays,
                            uint16_t next[LAYER_ACROSS * LAYER_ACROSS])
 {
-    layer_places *places = &rays->places;
+    layer_cells *unsorted = &rays->unsorted;
     uint32_t count = 0;
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (uint32_t g = 0; g < args->group_count; g++) {
             const size_t at = (size_t)g * GLINT_GROUP;
-            uint32_t *cell = places->cell + s * GLINT_TILE_SAMPLES + at;
+            uint32_t *cell = unsorted->cell + s * GLINT_TILE_SAMPLES + at;
             unsigned within = 0;
             for (int i = 0; i < GLINT_GROUP && args->open[s][g]; i += VF) {
                 const layer_lanes lanes = lanes_of_layer(frame, s, at, i);
@@ -138,7 +138,7 @@ static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *fr
                 within |= fm_bits(in) << i;
             }
             within &= args->open[s][g];
-            places->within[s][g] = (uint16_t)within;
+            unsorted->within[s][g] = (uint16_t)within;
             count += (unsigned)__builtin_popcount(within);
             for (; within; within &= within - 1)
                 next[cell[__builtin_ctz(within)]]++;
@@ -150,7 +150,7 @@ static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *fr
 static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays)
 {
     uint16_t next[LAYER_ACROSS * LAYER_ACROSS] = { 0 };
-    const layer_places *places = &rays->places;
+    const layer_cells *unsorted = &rays->unsorted;
     uint32_t total = 0;
     const uint32_t count = find_cells(args, frame, h, rays, next);
     for (int c = 0; c < LAYER_ACROSS * LAYER_ACROSS; c++) {
@@ -163,16 +163,16 @@ static uint32_t sort_layer(const glint_occlude_args *args, const layer_frame *fr
         for (uint32_t g = 0; g < args->group_count; g++) {
             const size_t at = (size_t)g * GLINT_GROUP, from = s * GLINT_TILE_SAMPLES + at;
             _Alignas(64) float base[2][GLINT_GROUP], slope[2][GLINT_GROUP];
-            for (int i = 0; i < GLINT_GROUP && places->within[s][g]; i += VF) {
+            for (int i = 0; i < GLINT_GROUP && unsorted->within[s][g]; i += VF) {
                 const layer_lanes lanes = lanes_of_layer(frame, s, at, i);
                 for (int j = 0; j < 2; j++) {
                     f_store(base[j] + i, lanes.base[j]);
                     f_store(slope[j] + i, lanes.slope[j]);
                 }
             }
-            for (unsigned bits = places->within[s][g]; bits; bits &= bits - 1) {
+            for (unsigned bits = unsorted->within[s][g]; bits; bits &= bits - 1) {
                 const int lane = __builtin_ctz(bits);
-                const uint32_t to = next[places->cell[from + (size_t)lane]]++;
+                const uint32_t to = next[unsorted->cell[from + (size_t)lane]]++;
                 for (int j = 0; j < 2; j++) {
                     rays->base[j][to] = base[j][lane];
                     rays->slope[j][to] = slope[j][lane];

@@ -38,10 +38,10 @@ typedef struct R(layers) {
 } R(layers);
 
 /// Extends two bounds by the positions of lanes.
-static inline void bound_places(const float (*place)[GLINT_GROUP], unsigned lanes, vf least[3], vf most[3])
+static inline void bound_positions(const float (*position)[GLINT_GROUP], unsigned lanes, vf least[3], vf most[3])
 {
     for (int j = 0; j < 3; j++)
-        widen(place[j], lanes, &least[j], &most[j]);
+        widen(position[j], lanes, &least[j], &most[j]);
 }
 
 /// Computes the positions of the points of lit groups, and their bounds.
@@ -60,7 +60,7 @@ static void R(place_points)(const R(shadow_tile) * tile, const uint16_t *lit, la
         }
         for (int j = 0; j < 3; j++)
             memcpy(frame->point[j] + at, placed[j], sizeof placed[j]);
-        bound_places((const float(*)[GLINT_GROUP])placed, lit[g], least, most);
+        bound_positions((const float(*)[GLINT_GROUP])placed, lit[g], least, most);
     }
 }
 
@@ -80,7 +80,7 @@ static void R(place_samples)(const R(shadow_tile) * tile, layer_frame *frame, vf
             for (int j = 0; j < 3; j++)
                 f_store(frame->light[s][j] + i, along_axis(frame->axis[j], x));
         }
-        bound_places((const float(*)[GLINT_GROUP])frame->light[s], 0xffff, least, most);
+        bound_positions((const float(*)[GLINT_GROUP])frame->light[s], 0xffff, least, most);
     }
 }
 

@@ -202,16 +202,16 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
 
 /// Computes the real part of a group for each sample. The surfaces must be known.
 INNER void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
-                          R(light_sample_set) * light_samples, R(group_place) place, R(lit_point) * surface,
+                          R(light_sample_set) * light_samples, R(group_cursor) cursor, R(lit_point) * surface,
                           R(lit_group) * groups)
 {
-    const size_t at = (size_t)place.g * GLINT_GROUP;
-    const unsigned open = args->hits[place.g] & ~(unsigned)args->dark[place.g];
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
+    const unsigned open = args->hits[cursor.g] & ~(unsigned)args->dark[cursor.g];
     for (uint32_t s = 0; s < samples; s++)
         groups[s].lit = groups[s].shiny = 0;
     if (!open)
         return;
-    surface->directions = R(directions_of)(args->camera, place.x, place.y);
+    surface->directions = R(directions_of)(args->camera, cursor.x, cursor.y);
     R(sort_highlights)(args, at, open, surface);
     if (kind == LIGHT_CONE)
         R(place_in_cone)(args->light_sample, samples, args->scale, args->point, args->normal, at, light_samples);
@@ -231,12 +231,12 @@ static inline void R(light_groups)(const glint_light_args *args, const int kind,
     R(lit_point) surface = { 0 };
     for (uint32_t s = 0; s < samples; s++)
         groups[s].brightest = f_set(GLINT_NO_SPECULAR);
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        R(light_group)(args, kind, samples, light_samples, place, &surface, groups);
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        R(light_group)(args, kind, samples, light_samples, cursor, &surface, groups);
         for (uint32_t s = 0; s < samples; s++) {
-            args->lit[s][place.g] = (uint16_t)groups[s].lit;
+            args->lit[s][cursor.g] = (uint16_t)groups[s].lit;
             if (groups[s].lit)
-                R(finish_light)(args, kind, s, (size_t)place.g * GLINT_GROUP, &groups[s]);
+                R(finish_light)(args, kind, s, (size_t)cursor.g * GLINT_GROUP, &groups[s]);
         }
     }
     for (uint32_t s = 0; s < samples; s++)

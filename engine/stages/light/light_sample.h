@@ -14,7 +14,7 @@
 /// A lamp's lanes, in the type that the stage computes with.
 typedef struct R(light_sample_lanes) {
     const real (*position)[GLINT_GROUP], (*normal)[GLINT_GROUP];
-    const double (*place)[GLINT_GROUP]; ///< the unrounded positions
+    const double (*exact_position)[GLINT_GROUP]; ///< the unrounded positions
 } R(light_sample_lanes);
 
 /// The samples of one call.
@@ -24,7 +24,7 @@ typedef struct R(light_sample_set) {
     _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< the memory that these point to
 #endif
     // for GLINT_EMIT_CONE, of the current group:
-    _Alignas(64) double place[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
+    _Alignas(64) double exact_position[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
     _Alignas(64) real direction[GLINT_LIGHT_CHUNK][3][GLINT_GROUP],
         far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< from the points:
         ///< unit directions, and distances
@@ -47,12 +47,12 @@ static inline void R(load_light_samples)(const glint_light_sample *const light_s
         out->light_sample[s].position = light_sample[s]->position;
         out->light_sample[s].normal = light_sample[s]->normal;
 #endif
-        out->light_sample[s].place = light_sample[s]->position;
+        out->light_sample[s].exact_position = light_sample[s]->position;
     }
     for (uint32_t s = 0; s < count && light_sample[s]->emission == GLINT_EMIT_CONE; s++) {
-        out->light_sample[s].place = (const double(*)[GLINT_GROUP])out->place[s];
+        out->light_sample[s].exact_position = (const double(*)[GLINT_GROUP])out->exact_position[s];
 #if GLINT_REAL == 64
-        out->light_sample[s].position = out->light_sample[s].place;
+        out->light_sample[s].position = out->light_sample[s].exact_position;
 #endif
     }
 }

@@ -97,16 +97,16 @@ INNER unsigned R(find_ball_part)(const glint_surface_args *surface, const R(ball
 
 /// Computes the parts of a group. Returns whether the camera is near enough to the spheres of all lanes in `hits`;
 /// *back: of these, those seen from behind.
-INNER bool R(find_ball_parts)(const glint_surface_args *surface, const R(ball_lanes) * balls, R(group_place) place,
+INNER bool R(find_ball_parts)(const glint_surface_args *surface, const R(ball_lanes) * balls, R(group_cursor) cursor,
                               unsigned hits, R(plain_part) * parts, unsigned *back)
 {
-    const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
+    const R(group_directions) directions = R(directions_of)(surface->camera, cursor.x, cursor.y);
     unsigned near = 0;
     *back = 0;
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
         unsigned behind;
-        near |= R(find_ball_part)(surface, balls, directions, (size_t)place.g * GLINT_GROUP, j, &parts[j], &behind)
+        near |= R(find_ball_part)(surface, balls, directions, (size_t)cursor.g * GLINT_GROUP, j, &parts[j], &behind)
                 << j * VR;
         *back |= behind << j * VR;
     }
@@ -133,23 +133,23 @@ INNER void R(store_ball_parts)(const glint_surface_args *surface, const R(plain_
 }
 
 static __attribute__((noinline)) bool R(light_balls)(const glint_surface_args *surface, const glint_light_args *light,
-                                                     R(surface_walk) * walk, bool normals, R(group_place) place,
+                                                     R(surface_walk) * walk, bool normals, R(group_cursor) cursor,
                                                      R(point_box) * box, R(lit_point) * point, vf *brightest)
 {
-    const size_t at = (size_t)place.g * GLINT_GROUP;
-    const unsigned hits = surface->hits[place.g];
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
+    const unsigned hits = surface->hits[cursor.g];
     const int kind = light->directional ? R(PLAIN_AFAR) : R(PLAIN_SCALED);
     R(ball_lanes) balls = R(no_balls)();
     R(plain_part) parts[LIT_PARTS];
     unsigned back;
     if (!R(find_balls)(surface, light, at, hits, walk, &balls, point) ||
-        !R(find_ball_parts)(surface, &balls, place, hits, parts, &back))
+        !R(find_ball_parts)(surface, &balls, cursor, hits, parts, &back))
         return false;
     R(store_ball_parts)(surface, parts, at, hits, normals, box);
-    surface->back[place.g] = (uint16_t)back;
-    surface->dark[place.g] = 0;
+    surface->back[cursor.g] = (uint16_t)back;
+    surface->dark[cursor.g] = 0;
     walk->any_back = walk->any_back || back;
-    R(plain_light)(light, kind, true, place, point, parts, hits & light->hits[place.g], 0, brightest);
+    R(plain_light)(light, kind, true, cursor, point, parts, hits & light->hits[cursor.g], 0, brightest);
     return true;
 }
 

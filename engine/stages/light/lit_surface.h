@@ -146,11 +146,11 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
 /// case. Returns whether the group is one. mixed: surface->mixed; normals: whether all are wanted; both are
 /// constants.
 INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
-                          const bool mixed, const bool normals, R(group_place) place, R(point_box) * box,
+                          const bool mixed, const bool normals, R(group_cursor) cursor, R(point_box) * box,
                           vf *brightest)
 {
-    const size_t at = (size_t)place.g * GLINT_GROUP;
-    if (!surface->camera || (surface->hits[place.g] & light->hits[place.g]) != 0xffff)
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
+    if (!surface->camera || (surface->hits[cursor.g] & light->hits[cursor.g]) != 0xffff)
         return false;
     const uint32_t id = surface->only ? *surface->only : surface->prim[at];
     if (!surface->only && lanes_equal(surface->prim + at, id) != 0xffff)
@@ -165,7 +165,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
                                (!GLINT_WITH_BLINN || material->highlight != GLINT_HIGHLIGHT_BLINN)))
         material = NULL;
-    const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
+    const R(group_directions) directions = R(directions_of)(surface->camera, cursor.x, cursor.y);
     R(lit_whole) whole;
     whole.lit = whole.back = whole.some = 0;
     const R(lit_wants) wants = { normals, mixed && surface->slack };
@@ -176,9 +176,9 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     else
         R(light_parts)(surface, light, call, slot, wants, GLINT_PRIM_SOLID, material, directions, at, box, &whole);
     lanes_put(surface->material + at, 0xffff, prim->material);
-    surface->back[place.g] = (uint16_t)whole.back;
-    surface->dark[place.g] = 0;
-    light->lit[0][place.g] = (uint16_t)whole.lit;
+    surface->back[cursor.g] = (uint16_t)whole.back;
+    surface->dark[cursor.g] = 0;
+    light->lit[0][cursor.g] = (uint16_t)whole.lit;
     call->walk.any_back = call->walk.any_back || whole.back;
     if (whole.lit)
         R(finish_whole)(light, &whole, true, 0, at, brightest);

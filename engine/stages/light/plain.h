@@ -74,22 +74,23 @@ INNER void R(plain_parts)(const glint_light_args *args, const int kind, const bo
 }
 
 /// Computes light s for one group.
-INNER void R(plain_light)(const glint_light_args *args, const int kind, const bool shiny, R(group_place) place,
+INNER void R(plain_light)(const glint_light_args *args, const int kind, const bool shiny, R(group_cursor) cursor,
                           const R(lit_point) * surface, const R(plain_part) * parts, unsigned open, uint32_t s, vf *brightest)
 {
     R(lit_whole) whole;
-    R(plain_parts)(args, kind, shiny, surface, parts, args->place[0] ? args->place[s] : args->position, open, &whole);
-    args->lit[s][place.g] = (uint16_t)whole.lit;
+    R(plain_parts)
+    (args, kind, shiny, surface, parts, args->positions[0] ? args->positions[s] : args->position, open, &whole);
+    args->lit[s][cursor.g] = (uint16_t)whole.lit;
     if (whole.lit)
-        R(finish_whole)(args, &whole, shiny, s, (size_t)place.g * GLINT_GROUP, brightest);
+        R(finish_whole)(args, &whole, shiny, s, (size_t)cursor.g * GLINT_GROUP, brightest);
 }
 
 /// Computes all lights for one group; the lanes in `open` may be lit. `kind` is a constant.
-INNER void R(plain_group)(const glint_light_args *args, const int kind, R(group_place) place, unsigned open,
+INNER void R(plain_group)(const glint_light_args *args, const int kind, R(group_cursor) cursor, unsigned open,
                           R(lit_point) * surface, vf brightest[])
 {
-    const size_t at = (size_t)place.g * GLINT_GROUP;
-    const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
+    const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
     R(plain_part) part[LIT_PARTS];
     R(sort_highlights)(args, at, open, surface);
     for (int j = 0; j < LIT_PARTS; j++) {
@@ -103,9 +104,9 @@ INNER void R(plain_group)(const glint_light_args *args, const int kind, R(group_
     }
     for (uint32_t s = 0; s < args->sample_count; s++) {
         if (surface->phong | surface->blinn)
-            R(plain_light)(args, kind, true, place, surface, part, open, s, &brightest[s]);
+            R(plain_light)(args, kind, true, cursor, surface, part, open, s, &brightest[s]);
         else
-            R(plain_light)(args, kind, false, place, surface, part, open, s, &brightest[s]);
+            R(plain_light)(args, kind, false, cursor, surface, part, open, s, &brightest[s]);
     }
 }
 
@@ -116,12 +117,12 @@ INNER void R(plain_groups)(const glint_light_args *args, const int kind)
     vf brightest[GLINT_LIGHT_CHUNK];
     for (uint32_t s = 0; s < args->sample_count; s++)
         brightest[s] = f_set(GLINT_NO_SPECULAR);
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const unsigned open = args->hits[place.g] & ~(unsigned)args->dark[place.g];
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        const unsigned open = args->hits[cursor.g] & ~(unsigned)args->dark[cursor.g];
         for (uint32_t s = 0; s < args->sample_count && !open; s++)
-            args->lit[s][place.g] = 0;
+            args->lit[s][cursor.g] = 0;
         if (open)
-            R(plain_group)(args, kind, place, open, &surface, brightest);
+            R(plain_group)(args, kind, cursor, open, &surface, brightest);
     }
     for (uint32_t s = 0; s < args->sample_count; s++)
         R(say_brightest)(args, s, brightest[s]);

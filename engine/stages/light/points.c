@@ -5,11 +5,11 @@
 
 /// Calls it with copies, so that values gathered over consecutive groups stay in registers.
 INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
-                        bool normals, R(group_place) place, R(point_box) * box, R(lit_point) * point, vf *brightest)
+                        bool normals, R(group_cursor) cursor, R(point_box) * box, R(lit_point) * point, vf *brightest)
 {
     R(point_box) around = *box;
     vf most = *brightest;
-    const bool done = R(light_balls)(surface, light, walk, normals, place, &around, point, &most);
+    const bool done = R(light_balls)(surface, light, walk, normals, cursor, &around, point, &most);
     *box = around;
     *brightest = most;
     return done;
@@ -31,17 +31,18 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
     call.scale = (real)light->scale;
     call.scaled = !light->directional && light->scale != 1;
     group.brightest = f_set(GLINT_NO_SPECULAR);
-    for (R(group_place) place = { 0 }; place.g < surface->group_count; R(next_group)(surface->camera, &place)) {
-        const uint32_t g = place.g;
+    for (R(group_cursor) cursor = { 0 }; cursor.g < surface->group_count; R(next_group)(surface->camera, &cursor)) {
+        const uint32_t g = cursor.g;
         if (!surface->hits[g]) {
             surface->back[g] = surface->dark[g] = 0;
             light->lit[0][g] = 0;
-        } else if (R(light_whole)(surface, light, &call, mixed, normals, place, &box, &group.brightest) ||
-                   (!mixed && R(try_balls)(surface, light, &call.walk, normals, place, &box, &point, &group.brightest))) {
+        } else if (R(light_whole)(surface, light, &call, mixed, normals, cursor, &box, &group.brightest) ||
+                   (!mixed &&
+                    R(try_balls)(surface, light, &call.walk, normals, cursor, &box, &point, &group.brightest))) {
             continue;
         } else {
-            R(surface_group)(surface, &call.walk, &box, place, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
-            R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
+            R(surface_group)(surface, &call.walk, &box, cursor, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
+            R(light_group)(light, LIGHT_PLAIN, 1, NULL, cursor, &point, &group);
             light->lit[0][g] = (uint16_t)group.lit;
             if (group.lit)
                 R(finish_light)(light, LIGHT_PLAIN, 0, (size_t)g * GLINT_GROUP, &group);

@@ -207,7 +207,7 @@ static void R(prepare_samples)(const R(shadow_tile) * tile, R(whole_light) * lig
         for (int k = 0; k < tile->count; k++) {
             light->sides[k][s] = (R(light_sides)) { 0xffff, 0 };
             if (!light->occluders[k].outside)
-                light->sides[k][s] = R(sides_of)(args, light->light_samples.light_sample[s].place,
+                light->sides[k][s] = R(sides_of)(args, light->light_samples.light_sample[s].exact_position,
                                                  &args->geometry->prims[tile->occluders[k].id]);
         }
     light->ready = !light->cone;

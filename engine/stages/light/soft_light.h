@@ -181,12 +181,12 @@ static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned rest
 
 /// Adds all samples for VF lanes from i on. Their open lanes are in call->light; rays are counted for lanes of
 /// `near`. `kind` and `glossy` are constants.
-INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool glossy, R(group_place) place, int i,
+INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool glossy, R(group_cursor) cursor, int i,
                           unsigned near, R(soft_point) * p)
 {
     const glint_light_args *args = call->args->light;
-    const size_t at = (size_t)place.g * GLINT_GROUP;
-    const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
+    const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
     p->diffuse = p->specular = f_set(0);
     p->reached = 0;
     for (int j = 0; j < SOFT_PARTS; j++) {
@@ -209,32 +209,32 @@ INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool 
 }
 
 /// One copy is compiled for each set of constants.
-static void R(add_matt)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
+static void R(add_matt)(const R(soft_call) * call, R(group_cursor) cursor, int i, unsigned near, R(soft_point) * p)
 {
     if (call->plain)
-        R(add_samples)(call, SOFT_PLAIN, false, place, i, near, p);
+        R(add_samples)(call, SOFT_PLAIN, false, cursor, i, near, p);
     else if (call->light.cone)
-        R(add_samples)(call, SOFT_CONE, false, place, i, near, p);
+        R(add_samples)(call, SOFT_CONE, false, cursor, i, near, p);
     else
-        R(add_samples)(call, SOFT_PLACED, false, place, i, near, p);
+        R(add_samples)(call, SOFT_PLACED, false, cursor, i, near, p);
 }
 
-static void R(add_glossy)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
+static void R(add_glossy)(const R(soft_call) * call, R(group_cursor) cursor, int i, unsigned near, R(soft_point) * p)
 {
     if (call->plain)
-        R(add_samples)(call, SOFT_PLAIN, true, place, i, near, p);
+        R(add_samples)(call, SOFT_PLAIN, true, cursor, i, near, p);
     else if (call->light.cone)
-        R(add_samples)(call, SOFT_CONE, true, place, i, near, p);
+        R(add_samples)(call, SOFT_CONE, true, cursor, i, near, p);
     else
-        R(add_samples)(call, SOFT_PLACED, true, place, i, near, p);
+        R(add_samples)(call, SOFT_PLACED, true, cursor, i, near, p);
 }
 
 /// Processes one group; `open`: the lanes that are not hidden from the whole light; `near`: of these, the lanes that
 /// may be hidden from a part of it.
-static void R(sum_group)(R(soft_call) * call, R(group_place) place, unsigned open, unsigned near)
+static void R(sum_group)(R(soft_call) * call, R(group_cursor) cursor, unsigned open, unsigned near)
 {
     const glint_soft_args *args = call->args;
-    const size_t at = (size_t)place.g * GLINT_GROUP;
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
     _Alignas(64) float diffuse[GLINT_GROUP], specular[GLINT_GROUP];
     R(soft_point) p;
     unsigned reached = 0;
@@ -242,14 +242,14 @@ static void R(sum_group)(R(soft_call) * call, R(group_place) place, unsigned ope
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const unsigned lanes = (1u << VF) - 1;
         if ((call->gloss.phong | call->gloss.blinn) >> i & lanes)
-            R(add_glossy)(call, place, i, near >> i & lanes, &p);
+            R(add_glossy)(call, cursor, i, near >> i & lanes, &p);
         else
-            R(add_matt)(call, place, i, near >> i & lanes, &p);
+            R(add_matt)(call, cursor, i, near >> i & lanes, &p);
         f_store(diffuse + i, p.diffuse);
         f_store(specular + i, p.specular);
         reached |= p.reached << i;
     }
-    args->reached[place.g] = (uint16_t)reached;
+    args->reached[cursor.g] = (uint16_t)reached;
     for (int i = 0; reached && i < GLINT_GROUP; i += VF) {
         f_store(args->diffuse + at + i, f_load(diffuse + i));
         if (args->light->highlights)
@@ -261,26 +261,27 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
 {
     const glint_soft_args *args = call->args;
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
-    for (R(group_place) place = { 0 }; place.g < args->light->group_count; R(next_group)(args->light->camera, &place)) {
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->light->group_count;
+         R(next_group)(args->light->camera, &cursor)) {
         R(soft_group) sorted;
         sorted.any_near = sorted.hidden = 0;
-        if (lit[place.g] && call->tile.count) {
-            R(begin_group)(place.g, &group);
-            sorted = R(sort_group)(&call->tile, &call->light, &group, lit[place.g]);
+        if (lit[cursor.g] && call->tile.count) {
+            R(begin_group)(cursor.g, &group);
+            sorted = R(sort_group)(&call->tile, &call->light, &group, lit[cursor.g]);
         }
-        const unsigned open = lit[place.g] & ~sorted.hidden;
-        args->reached[place.g] = 0;
+        const unsigned open = lit[cursor.g] & ~sorted.hidden;
+        args->reached[cursor.g] = 0;
         if (!open)
             continue;
         if (call->light.cone)
             R(place_in_cone)
         (args->light->light_sample, args->light->sample_count, args->light->scale, args->light->point,
-         args->light->normal, (size_t)place.g * GLINT_GROUP, &call->light.light_samples);
+         args->light->normal, (size_t)cursor.g * GLINT_GROUP, &call->light.light_samples);
         for (uint32_t s = 0; s < GLINT_LIGHT_CHUNK; s++)
             call->light.open[s] = open;
         if (sorted.any_near)
             R(block_group)(&call->tile, &sorted, group.at, &call->light);
-        R(sum_group)(call, place, open, sorted.any_near);
+        R(sum_group)(call, cursor, open, sorted.any_near);
     }
 }
 

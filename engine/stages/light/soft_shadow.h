@@ -22,10 +22,10 @@ static void R(occlude_walking)(R(shadow_tile) * tile)
     R(light_sample_set) light_samples;
     for (uint32_t s = 0; s < args->sample_count; s++) {
         R(shadow_group) group = { .last_blocker = GLINT_MISS };
-        const double(*place)[GLINT_GROUP] =
-            cone ? (const double(*)[GLINT_GROUP])light_samples.place[0] : args->light_sample[s]->position;
+        const double(*target)[GLINT_GROUP] =
+            cone ? (const double(*)[GLINT_GROUP])light_samples.exact_position[0] : args->light_sample[s]->position;
         if (!cone)
-            R(aim_at)(tile, place);
+            R(aim_at)(tile, target);
         for (uint32_t g = 0; g < args->group_count; g++) {
             unsigned open = args->lit[s][g];
             *args->rays += (unsigned)__builtin_popcount(open);
@@ -34,10 +34,10 @@ static void R(occlude_walking)(R(shadow_tile) * tile)
                 if (cone) {
                     R(place_in_cone)
                     (&args->light_sample[s], 1, args->scale, args->point, args->normal, group.at, &light_samples);
-                    R(aim_at)(tile, place);
+                    R(aim_at)(tile, target);
                 }
-                open = R(test_unbounded)(tile, place, &group, open);
-                open = R(walk_group)(tile, place, &group, open);
+                open = R(test_unbounded)(tile, target, &group, open);
+                open = R(walk_group)(tile, target, &group, open);
             }
             args->open[s][g] = (uint16_t)open;
         }

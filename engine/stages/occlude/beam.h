@@ -48,8 +48,8 @@ static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *see
             const vf start = f_set(view->first[n]), end = f_set(view->last[n]);
             const vf least = f_load(shown->least[n] + i), most = f_load(shown->most[n] + i);
             away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
-            in = i_or(i_shl(in, 16), i_or(cell_of_place(view, n, f_max(least, start)),
-                                          i_shl(cell_of_place(view, n, f_min(most, end)), 8)));
+            in = i_or(i_shl(in, 16), i_or(screen_cell(view, n, f_max(least, start)),
+                                          i_shl(screen_cell(view, n, f_min(most, end)), 8)));
         }
         i_store(cells + i, in);
         mask &= ~(fm_bits(away) << i);

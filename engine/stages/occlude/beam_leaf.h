@@ -183,7 +183,7 @@ INNER void R(points_near_triangle)(R(beam) * beam, int slot, own_side mine, uint
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
         const unsigned own = fm_bits(i_eq(i_and(owner, i_set(~BEAM_BACK)), i_set(mine.id)));
         const unsigned dark = mine.any ? own : fm_bits(i_eq(owner, i_set(mine.id | mine.side)));
-        const unsigned near = between_edges(shown, slot, f_load_any(beam->place[0] + i), f_load_any(beam->place[1] + i));
+        const unsigned near = between_edges(shown, slot, f_load_any(beam->uv[0] + i), f_load_any(beam->uv[1] + i));
         const unsigned found = behind & ((near & ~own) | dark);
         beam->run[n] = (R(near_points)) { (uint16_t)i, (uint16_t)found, (uint16_t)own, (uint16_t)slot };
         n += found != 0;

@@ -50,7 +50,7 @@ typedef struct R(beam) {
     screen_view view;
     uint32_t count, open; ///< points; of these, the ones without an occluder so far
     // the points in the order of cells, row by row
-    _Alignas(64) float place[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
+    _Alignas(64) float uv[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
     _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< -inf for blocked points
     uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< the primitive that the point is on; with BEAM_BACK: seen from
         ///< behind
@@ -118,14 +118,14 @@ static inline void R(points_from)(const void *const point[3], size_t at, const g
 }
 
 /// The points as the light sees them, in the order of the call's groups.
-typedef struct R(beam_places) {
-    _Alignas(64) float place[2][GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
+typedef struct R(beam_coords) {
+    _Alignas(64) float uv[2][GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t cell[GLINT_TILE_SAMPLES];
-} R(beam_places);
+} R(beam_coords);
 
 /// Projects the points and bounds their positions. Returns whether a beam fits them; with NaN, it does not.
 static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, screen_view *view,
-                              R(beam_places) * places)
+                              R(beam_coords) * coords)
 {
     _Alignas(64) float local[3][GLINT_GROUP];
     vf least[3], most[3];
@@ -135,7 +135,7 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
     }
     for (uint32_t g = 0; g < tile->args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
-        float *const out[3] = { places->place[0] + at, places->place[1] + at, places->w + at };
+        float *const out[3] = { coords->uv[0] + at, coords->uv[1] + at, coords->w + at };
         if (!lit[g])
             continue;
         R(points_from)(tile->args->point, at, tile->args->geometry, view->exact, local);
@@ -171,7 +171,7 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
 }
 
 /// Sorts the points by cell.
-static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) * places)
+static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_coords) * coords)
 {
     const glint_occlude_args *args = beam->tile->args;
     uint16_t next[BEAM_DOWN * SCREEN_ACROSS] = { 0 };
@@ -180,10 +180,10 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
         if (!lit[g])
             continue;
         for (size_t i = at; i < at + GLINT_GROUP; i += VF)
-            i_store(places->cell + i, i_add(cell_of_place(&beam->view, 0, f_load(places->place[0] + i)),
-                                            i_shl(cell_of_place(&beam->view, 1, f_load(places->place[1] + i)), 4)));
+            i_store(coords->cell + i, i_add(screen_cell(&beam->view, 0, f_load(coords->uv[0] + i)),
+                                            i_shl(screen_cell(&beam->view, 1, f_load(coords->uv[1] + i)), 4)));
         for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1)
-            next[places->cell[at + (unsigned)__builtin_ctz(lanes)]]++;
+            next[coords->cell[at + (unsigned)__builtin_ctz(lanes)]]++;
     }
     beam->count = 0;
     for (int c = 0; c < BEAM_DOWN * SCREEN_ACROSS; c++) {
@@ -197,15 +197,15 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
     for (uint32_t g = 0; g < args->group_count; g++)
         for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1) {
             const size_t from = (size_t)g * GLINT_GROUP + (unsigned)__builtin_ctz(lanes);
-            const uint32_t cell = places->cell[from], to = next[cell]++;
+            const uint32_t cell = coords->cell[from], to = next[cell]++;
             float *far = &beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS];
-            beam->place[0][to] = places->place[0][from];
-            beam->place[1][to] = places->place[1][from];
-            beam->w[to] = places->w[from];
+            beam->uv[0][to] = coords->uv[0][from];
+            beam->uv[1][to] = coords->uv[1][from];
+            beam->w[to] = coords->w[from];
             beam->own[to] = args->prim[from] | (args->back[g] >> from % GLINT_GROUP & 1 ? BEAM_BACK : 0);
             beam->at[to] = (uint16_t)from;
             beam->cell[to] = (uint16_t)cell;
-            *far = larger(places->w[from], *far); // NaN in w is ignored
+            *far = larger(coords->w[from], *far); // NaN in w is ignored
         }
 }
 

@@ -36,7 +36,7 @@ typedef struct R(occluder) {
 /// Data shared by the groups of one call.
 typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
-    light_place light; ///< the whole light if it is an area light
+    light_bounds light; ///< the whole light if it is an area light
     _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its current sample, for each lane
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
     bool far; ///< local_light, or numbers computed from it, may overflow
@@ -84,17 +84,17 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     return (height > 0) - (height < 0);
 }
 
-/// Returns the sides of the light. `place`: of the sample; NULL if it is not an area light.
+/// Returns the sides of the light. `target`: of the sample; NULL if it is not an area light.
 static inline R(light_sides)
-    R(sides_of)(const glint_occlude_args *args, const double (*place)[GLINT_GROUP], const glint_prim *prim)
+    R(sides_of)(const glint_occlude_args *args, const double (*target)[GLINT_GROUP], const glint_prim *prim)
 {
     R(light_sides) sides = { 0, 0 };
-    for (int lane = 0; lane < (place ? GLINT_GROUP : 1); lane++) {
+    for (int lane = 0; lane < (target ? GLINT_GROUP : 1); lane++) {
         double position[3];
         for (int k = 0; k < 3; k++)
-            position[k] = place ? place[k][lane] : args->position[k];
+            position[k] = target ? target[k][lane] : args->position[k];
         const int side = R(light_side)(args, prim, position);
-        const uint16_t lanes = (uint16_t)(place ? 1u << lane : 0xffffu);
+        const uint16_t lanes = (uint16_t)(target ? 1u << lane : 0xffffu);
         sides.outside |= side > 0 ? lanes : 0;
         sides.inside |= side < 0 ? lanes : 0;
     }
@@ -102,22 +102,22 @@ static inline R(light_sides)
 }
 
 /// Aims the tile at its light (NULL), or at one sample of it.
-static inline void R(aim_at)(R(shadow_tile) * tile, const double (*place)[GLINT_GROUP])
+static inline void R(aim_at)(R(shadow_tile) * tile, const double (*target)[GLINT_GROUP])
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i += VR) {
-            if (place)
+            if (target)
                 for (int j = i; j < i + VR; j++)
-                    tile->position[k][j] = (real)place[k][j];
+                    tile->position[k][j] = (real)target[k][j];
             else
                 r_store(tile->position[k] + i, r_set(args->position[k]));
         }
     tile->far = false;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
-            const double x = place ? place[k][i] : args->position[k];
+            const double x = target ? target[k][i] : args->position[k];
             const double local = args->directional ? x : (x - geometry->reference[k]) * geometry->scale;
             tile->local_light[k][i] = (float)local;
             tile->far = tile->far || !(fabs(local) < FAR_LIGHT);

@@ -22,7 +22,7 @@
 typedef struct grid_points {
     uint32_t count, live_count;
     uint16_t live[GLINT_TILE_SAMPLES]; ///< points that are not decided yet
-    float place[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< in the format of entries, plus GRID_BIAS
+    float uv[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< in the format of entries, plus GRID_BIAS
     float reach[GLINT_TILE_SAMPLES]; ///< factor of the square of an entry's radius
     uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< entries of its cell that remain
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
@@ -46,21 +46,21 @@ typedef struct grid_pairs {
 // ---- Projected positions ----
 
 /// A group's projected positions in the light's view.
-typedef struct grid_places {
-    _Alignas(64) float place[2][GLINT_GROUP], w[GLINT_GROUP], reach[GLINT_GROUP];
+typedef struct grid_coords {
+    _Alignas(64) float uv[2][GLINT_GROUP], w[GLINT_GROUP], reach[GLINT_GROUP];
     _Alignas(64) uint32_t cell[GLINT_GROUP];
     unsigned known; ///< lanes whose numbers are defined
-} grid_places;
+} grid_coords;
 
 /// The tile's projected positions and runs.
 typedef struct grid_runs {
-    grid_places places[GLINT_TILE_GROUPS];
+    grid_coords coords[GLINT_TILE_GROUPS];
     uint32_t count;
     grid_run run[GLINT_TILE_GROUPS];
 } grid_runs;
 
 /// Projects VD lanes from i on.
-static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, grid_places *out)
+static void grid_lane_coords(const glint_occlude_args *args, size_t at, int i, grid_coords *out)
 {
     const glint_light_grid *grid = args->grid;
     const vd one = d_set(1);
@@ -74,10 +74,10 @@ static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, g
     if (!grid->directional)
         per_w = one / seen[2];
     for (int j = 0; j < 2; j++) {
-        const vd place = seen[j] * per_w;
+        const vd coord = seen[j] * per_w;
         if (!grid->directional)
-            reach = reach + place * place;
-        d_store_f(out->place[j] + i, place);
+            reach = reach + coord * coord;
+        d_store_f(out->uv[j] + i, coord);
     }
     d_store_f(out->w + i, seen[2]);
     d_store_f(out->reach + i, reach);
@@ -89,23 +89,23 @@ static inline vf grid_biased(vi x) { return f_from_bits(i_or(x, i_set(0x4b000000
 
 /// Computes the cells of a group, and the projected positions in the format of entries. Returns the lanes that are in
 /// a cell, and behind the nearest of all entries.
-static unsigned grid_cells(const glint_light_grid *grid, grid_places *places)
+static unsigned grid_cells(const glint_light_grid *grid, grid_coords *coords)
 {
     const vf bias = f_set(GRID_BIAS), aside = f_set((float)(GLINT_GRID_ASIDE * GLINT_GRID_STEPS) + GRID_BIAS);
     unsigned inside = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf w = f_load(places->w + i);
+        const vf w = f_load(coords->w + i);
         vi cell[2];
         fm in = f_le(f_set(grid->nearest), w);
         for (int j = 0; j < 2; j++) {
-            const vf x = (f_load(places->place[j] + i) - f_set(grid->first[j])) * f_set(grid->cells);
+            const vf x = (f_load(coords->uv[j] + i) - f_set(grid->first[j])) * f_set(grid->cells);
             in = fm_and(in, fm_and(f_le(f_set(0), x), f_lt(x, f_set((float)grid->count[j]))));
             cell[j] = i_from_f(f_select(in, x, f_set(0)));
-            f_store(places->place[j] + i, (x - (grid_biased(cell[j]) - bias)) * f_set(GLINT_GRID_STEPS) + aside);
+            f_store(coords->uv[j] + i, (x - (grid_biased(cell[j]) - bias)) * f_set(GLINT_GRID_STEPS) + aside);
         }
-        f_store(places->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
-        f_store(places->reach + i, f_load(places->reach + i) * f_set(GRID_REACH));
-        i_store(places->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // row and column
+        f_store(coords->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
+        f_store(coords->reach + i, f_load(coords->reach + i) * f_set(GRID_REACH));
+        i_store(coords->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // row and column
         inside |= fm_bits(in) << i;
     }
     return inside;
@@ -129,14 +129,14 @@ static unsigned grid_own(const glint_occlude_args *args, size_t at, unsigned bac
 
 static inline void grid_prefetch(const glint_light_grid *grid, uint32_t entry)
 {
-    __builtin_prefetch(grid->place + entry);
+    __builtin_prefetch(grid->center + entry);
     __builtin_prefetch(grid->size + entry);
 }
 
 /// Returns the entries of a lane's cell, and prefetches them.
-static grid_run grid_look_up(const glint_light_grid *grid, const grid_places *places, unsigned lane)
+static grid_run grid_look_up(const glint_light_grid *grid, const grid_coords *coords, unsigned lane)
 {
-    const uint32_t cell = (places->cell[lane] >> 16) * grid->count[0] + (places->cell[lane] & 0xffff);
+    const uint32_t cell = (coords->cell[lane] >> 16) * grid->count[0] + (coords->cell[lane] & 0xffff);
     const grid_run run = { .next = grid->begin[cell], .end = grid->begin[cell + 1] };
     if (run.next < run.end)
         grid_prefetch(grid, run.next);
@@ -144,19 +144,20 @@ static grid_run grid_look_up(const glint_light_grid *grid, const grid_places *pl
 }
 
 /// Adds lanes of a group one by one.
-static void grid_add_points(const glint_light_grid *grid, const grid_places *places, uint32_t g, unsigned lanes, grid_points *points)
+static void grid_add_points(const glint_light_grid *grid, const grid_coords *coords, uint32_t g, unsigned lanes,
+                            grid_points *points)
 {
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = (unsigned)__builtin_ctz(lanes), k = points->count;
-        const grid_run run = grid_look_up(grid, places, lane);
+        const grid_run run = grid_look_up(grid, coords, lane);
         if (run.next == run.end)
             continue;
         points->next[k] = run.next;
         points->end[k] = run.end;
-        points->place[0][k] = places->place[0][lane];
-        points->place[1][k] = places->place[1][lane];
-        points->near[k] = places->w[lane];
-        points->reach[k] = places->reach[lane];
+        points->uv[0][k] = coords->uv[0][lane];
+        points->uv[1][k] = coords->uv[1][lane];
+        points->near[k] = coords->w[lane];
+        points->reach[k] = coords->reach[lane];
         points->at[k] = (uint16_t)(g * GLINT_GROUP + lane);
         points->live[k] = (uint16_t)k;
         points->count++;
@@ -168,28 +169,28 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs
 {
     const glint_light_grid *grid = args->grid;
     const size_t at = (size_t)g * GLINT_GROUP;
-    grid_places *places = &runs->places[g];
-    places->known = 0;
+    grid_coords *coords = &runs->coords[g];
+    coords->known = 0;
     for (int i = 0; i < GLINT_GROUP; i += VD)
-        grid_place_lanes(args, at, i, places);
-    if (args->open[0][g] & ~places->known)
+        grid_lane_coords(args, at, i, coords);
+    if (args->open[0][g] & ~coords->known)
         return false;
     args->open[0][g] &= (uint16_t)~grid_own(args, at, args->open[0][g] & args->back[g]);
-    const unsigned pending = args->open[0][g] & grid_cells(grid, places);
+    const unsigned pending = args->open[0][g] & grid_cells(grid, coords);
     if (!pending)
         return true;
     const unsigned first = (unsigned)__builtin_ctz(pending),
-                   same = pending & lanes_equal(places->cell, places->cell[first]);
+                   same = pending & lanes_equal(coords->cell, coords->cell[first]);
     if (__builtin_popcount(same) < GRID_TOGETHER) {
-        grid_add_points(grid, places, g, pending, points);
+        grid_add_points(grid, coords, g, pending, points);
         return true;
     }
-    grid_run run = grid_look_up(grid, places, first);
+    grid_run run = grid_look_up(grid, coords, first);
     run.lanes = (uint16_t)same;
     run.group = (uint16_t)g;
     if (run.next < run.end)
         runs->run[runs->count++] = run;
-    grid_add_points(grid, places, g, pending & ~same, points);
+    grid_add_points(grid, coords, g, pending & ~same, points);
     return true;
 }
 
@@ -198,7 +199,7 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs
 static inline vi grid_load(const uint32_t *p) { return f_bits(f_load_any((const float *)p)); }
 
 /// Returns an entry's position along an axis, in the format of points: the lower 16 bits.
-static inline vf grid_step(vi place) { return grid_biased(i_and(place, i_set(0xffff))); }
+static inline vf grid_step(vi center) { return grid_biased(i_and(center, i_set(0xffff))); }
 
 /// Returns whether squared distances in steps are within an entry's reach.
 static inline fm grid_within(vi size, vf du, vf dv, vf reach)
@@ -214,13 +215,14 @@ static inline fm grid_before(vi size, vf w) { return f_le(grid_biased(i_shr(size
 static uint32_t grid_next(const glint_light_grid *grid, const grid_points *points, uint32_t k, uint32_t own)
 {
     const uint32_t end = points->end[k];
-    const vf u = f_set(points->place[0][k]), v = f_set(points->place[1][k]), reach = f_set(points->reach[k]);
+    const vf u = f_set(points->uv[0][k]), v = f_set(points->uv[1][k]), reach = f_set(points->reach[k]);
     const vf w = f_set(points->near[k]);
     for (uint32_t from = points->next[k]; from < end; from += VF) {
         const unsigned there = end - from < VF ? (1u << (end - from)) - 1 : (1u << VF) - 1;
-        const vi place = grid_load(grid->place + from), size = grid_load(grid->size + from);
+        const vi center = grid_load(grid->center + from), size = grid_load(grid->size + from);
         const unsigned before = fm_bits(grid_before(size, w)) & there;
-        unsigned near = before & fm_bits(grid_within(size, grid_step(place) - u, grid_step(i_shr(place, 16)) - v, reach));
+        unsigned near =
+            before & fm_bits(grid_within(size, grid_step(center) - u, grid_step(i_shr(center, 16)) - v, reach));
         for (; near; near &= near - 1)
             if (grid->id[from + (unsigned)__builtin_ctz(near)] != own)
                 return from + (unsigned)__builtin_ctz(near);
@@ -312,9 +314,9 @@ typedef struct grid_bounds {
     vf least[2], most[2], w, reach; ///< the same number in all lanes
 } grid_bounds;
 
-static inline grid_bounds grid_bound(const grid_places *places, unsigned lanes)
+static inline grid_bounds grid_bound(const grid_coords *coords, unsigned lanes)
 {
-    const float *const of[4] = { places->place[0], places->place[1], places->w, places->reach };
+    const float *const of[4] = { coords->uv[0], coords->uv[1], coords->w, coords->reach };
     vf least[4], most[4];
     for (int j = 0; j < 4; j++) {
         least[j] = f_set(HUGE_VALF);
@@ -327,20 +329,25 @@ static inline grid_bounds grid_bound(const grid_places *places, unsigned lanes)
 }
 
 /// Returns the distance in steps from a position to the interval of bounds.
-static inline vf grid_beside(vf place, vf least, vf most) { return f_max(f_max(least - place, place - most), f_set(0)); }
+static inline vf grid_beside(vf center, vf least, vf most)
+{
+    return f_max(f_max(least - center, center - most), f_set(0));
+}
 
 /// Returns the lanes of `open`, all in the cell of an entry, that the entry's sphere blocks.
-static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_places *places, size_t at, uint32_t entry, unsigned open)
+static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_coords *coords, size_t at, uint32_t entry,
+                                  unsigned open)
 {
     const glint_occlude_args *args = tile->args;
     const glint_light_grid *grid = args->grid;
-    const vi place = i_set(grid->place[entry]), size = i_set(grid->size[entry]);
-    const vf u = grid_step(place), v = grid_step(i_shr(place, 16));
+    const vi center = i_set(grid->center[entry]), size = i_set(grid->size[entry]);
+    const vf u = grid_step(center), v = grid_step(i_shr(center, 16));
     const light_sides_f64 sides = { 0xffff, 0 };
     unsigned near = 0, blocked = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const fm within = grid_within(size, u - f_load(places->place[0] + i), v - f_load(places->place[1] + i), f_load(places->reach + i));
-        near |= fm_bits(fm_and(within, grid_before(size, f_load(places->w + i)))) << i;
+        const fm within =
+            grid_within(size, u - f_load(coords->uv[0] + i), v - f_load(coords->uv[1] + i), f_load(coords->reach + i));
+        near |= fm_bits(fm_and(within, grid_before(size, f_load(coords->w + i)))) << i;
     }
     near &= open & ~lanes_equal(args->prim + at, grid->id[entry]);
     if (!near)
@@ -359,19 +366,20 @@ static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_places
 }
 
 /// Tests a run's points against its cell's entries.
-static void grid_test_run(const shadow_tile_f64 *tile, const grid_places *places, const grid_run *run)
+static void grid_test_run(const shadow_tile_f64 *tile, const grid_coords *coords, const grid_run *run)
 {
     const glint_light_grid *grid = tile->args->grid;
-    const grid_bounds bounds = grid_bound(places, run->lanes);
+    const grid_bounds bounds = grid_bound(coords, run->lanes);
     unsigned open = run->lanes;
     for (uint32_t from = run->next; from < run->end && open; from += VF) {
         const unsigned there = run->end - from < VF ? (1u << (run->end - from)) - 1 : (1u << VF) - 1;
-        const vi place = grid_load(grid->place + from), size = grid_load(grid->size + from);
-        const vf du = grid_beside(grid_step(place), bounds.least[0], bounds.most[0]);
-        const vf dv = grid_beside(grid_step(i_shr(place, 16)), bounds.least[1], bounds.most[1]);
+        const vi center = grid_load(grid->center + from), size = grid_load(grid->size + from);
+        const vf du = grid_beside(grid_step(center), bounds.least[0], bounds.most[0]);
+        const vf dv = grid_beside(grid_step(i_shr(center, 16)), bounds.least[1], bounds.most[1]);
         const unsigned before = fm_bits(grid_before(size, bounds.w)) & there;
         for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && open; near &= near - 1)
-            open &= ~grid_entry_blocks(tile, places, (size_t)run->group * GLINT_GROUP, from + (unsigned)__builtin_ctz(near), open);
+            open &= ~grid_entry_blocks(tile, coords, (size_t)run->group * GLINT_GROUP,
+                                       from + (unsigned)__builtin_ctz(near), open);
         if (grid->sorted && before != there) // the entries that follow are behind the points
             break;
     }
@@ -412,7 +420,7 @@ static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
         if (args->open[0][g] && !grid_add_group(args, g, &runs, &points))
             return false;
     for (uint32_t i = 0; i < runs.count && !is_stopped(args->stop); i++)
-        grid_test_run(tile, &runs.places[runs.run[i].group], &runs.run[i]);
+        grid_test_run(tile, &runs.coords[runs.run[i].group], &runs.run[i]);
     points.live_count = points.count;
     while (points.live_count && !is_stopped(args->stop)) {
         grid_pair(args, &points, &pairs);

@@ -40,12 +40,12 @@ static inline unsigned R(all_occluders)(const R(shadow_tile) * tile)
 }
 
 /// Returns an occluder's bit in the list, or 0.
-static inline unsigned R(places_of)(const R(shadow_tile) * tile, const R(near_list) * list, uint32_t id)
+static inline unsigned R(lanes_of)(const R(shadow_tile) * tile, const R(near_list) * list, uint32_t id)
 {
-    unsigned places = 0;
+    unsigned lanes = 0;
     for (int i = 0; i < GLINT_OCCLUDERS; i += GLINT_GROUP)
-        places |= lanes_equal(list->id + i, id) << i;
-    return places & R(all_occluders)(tile);
+        lanes |= lanes_equal(list->id + i, id) << i;
+    return lanes & R(all_occluders)(tile);
 }
 
 /// Returns the maximum distance of `lanes` from one point of a group, rounded up; infinite if float overflows.
@@ -97,7 +97,7 @@ static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list
     const unsigned near = R(balls_near)(tile, list, from, R(reach_of_group)(group, from, lanes));
     for (int count = 0; rest; count++) {
         const uint32_t id = prim[__builtin_ctz(rest)];
-        own |= R(places_of)(tile, list, id);
+        own |= R(lanes_of)(tile, list, id);
         rest &= ~lanes_equal(prim, id);
         if (!rest && !count && !(lanes & tile->args->back[group->at / GLINT_GROUP]))
             return near & ~(own & list->spheres);

@@ -15,7 +15,7 @@
 /// Returns whether a plane that touches the sphere has the whole shaft on its other side: then the sphere blocks
 /// nothing.
 static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
-                            const light_place *light)
+                            const light_bounds *light)
 {
     float middle[3], half[3], end[3], end_half[3], segment[3], e[3], along = 0, length2 = 0;
     for (int k = 0; k < 3; k++) {
@@ -111,19 +111,19 @@ static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_pri
 
 /// Computes the same as sides_of, faster if the light is far from the primitive.
 static inline R(light_sides)
-    R(seen_sides)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], const glint_prim *prim)
+    R(seen_sides)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], const glint_prim *prim)
 {
     if (R(light_outside)(tile, prim))
         return (R(light_sides)) { 0xffff, 0 };
-    return R(sides_of)(tile->args, place, prim);
+    return R(sides_of)(tile->args, target, prim);
 }
 
 /// Tests a primitive found by traversal. Returns the lanes that are still open.
-static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP],
+static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP],
                                         R(shadow_group) * group, uint32_t id, unsigned open)
 {
     const glint_prim *prim = &tile->args->geometry->prims[id];
-    const R(occluder) occluder = { id, R(seen_sides)(tile, place, prim) };
+    const R(occluder) occluder = { id, R(seen_sides)(tile, target, prim) };
     const unsigned blocked = R(blocked_by)(tile, occluder, group, open);
     if (blocked)
         group->last_blocker = id;
@@ -146,7 +146,7 @@ static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * g
 
 /// Traverses the index with the shaft of a group. Gives up if there are many nodes to visit; *done: whether it did
 /// not.
-static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
+static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
                               unsigned open, bool *done)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
@@ -166,7 +166,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*place)
         for (unsigned mask = boxes_in_shaft(node, &shaft); mask && open; mask &= mask - 1) {
             const uint32_t child = node->child[__builtin_ctz(mask)];
             if (child & GLINT_NODE_PRIM)
-                open = R(test_occluder)(tile, place, group, child & ~GLINT_NODE_PRIM, open);
+                open = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, open);
             else
                 stack[height++] = child;
         }
@@ -176,7 +176,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*place)
 }
 
 /// Traverses the index with the segment of one lane. The primitives found are tested against all unoccluded lanes.
-static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
+static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
                              int lane, unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
@@ -201,7 +201,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[
                 stack[height++] = child;
                 continue;
             }
-            open = R(test_occluder)(tile, place, group, child & ~GLINT_NODE_PRIM, open);
+            open = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, open);
             if (!(open >> lane & 1))
                 return open;
         }
@@ -210,29 +210,29 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[
 }
 
 /// Returns the lanes of `open` that no unbounded surface blocks.
-static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP],
+static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP],
                                          R(shadow_group) * group, unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
-        open = R(test_occluder)(tile, place, group, geometry->unbounded[i], open);
+        open = R(test_occluder)(tile, target, group, geometry->unbounded[i], open);
     return open;
 }
 
 /// Returns the lanes of `open` that nothing in the index blocks, for a group that is traversed separately.
-static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
+static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
                               unsigned open)
 {
     bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
     if (group->last_blocker != GLINT_MISS) // it often blocks the next group, too
-        open = R(test_occluder)(tile, place, group, group->last_blocker, open);
+        open = R(test_occluder)(tile, target, group, group->last_blocker, open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
-        open = R(walk_shaft)(tile, place, group, open, &done);
+        open = R(walk_shaft)(tile, target, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
     for (unsigned bits = open; bits && !done && !is_stopped(tile->args->stop); bits &= (bits - 1) & open)
-        open = R(walk_lane)(tile, place, group, __builtin_ctz(bits), open);
+        open = R(walk_lane)(tile, target, group, __builtin_ctz(bits), open);
     return open;
 }
 

@@ -86,7 +86,7 @@ INNER void R(points_near)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i,
 {
     int n = beam->runs;
     for (; i < end; i += VF) {
-        const vf u = f_load_any(beam->place[0] + i), v = f_load_any(beam->place[1] + i), w = f_load_any(beam->w + i);
+        const vf u = f_load_any(beam->uv[0] + i), v = f_load_any(beam->uv[1] + i), w = f_load_any(beam->w + i);
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(b->near), w)) & in_run;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
@@ -191,14 +191,14 @@ static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch
 static bool R(occlude_beam)(const R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;
-    R(beam_places) places;
+    R(beam_coords) coords;
     R(beam) beam;
     beam.tile = tile;
     if (!R(aim_beam)(tile, &beam.view))
         return false;
-    if (!R(project_points)(tile, args->open[0], &beam.view, &places))
+    if (!R(project_points)(tile, args->open[0], &beam.view, &coords))
         return false;
-    R(sort_points)(&beam, args->open[0], &places);
+    R(sort_points)(&beam, args->open[0], &coords);
     R(begin_batch)(args, &beam.batch);
     R(begin_beam_leaf)(&beam.leaf);
     beam.runs = 0;

@@ -50,7 +50,7 @@ INNER void unit_lanes(const glint_unit_args *args, const unit_target target, con
         if (target == TO_EYE)
             d[c] = -(d_load(across + c * GLINT_GROUP) + d_load(down + c * GLINT_GROUP));
         else
-            d[c] = target == TO_POSITION ? d_set(args->place[c]) : d_load(args->to[c] + at);
+            d[c] = target == TO_POSITION ? d_set(args->position[c]) : d_load(args->to[c] + at);
         if (target != TO_EYE && args->from[0])
             d[c] = d[c] - d_load(args->from[c] + at);
     }
@@ -81,7 +81,7 @@ static void unit(const glint_unit_args *args)
 {
     if (args->camera)
         unit_groups(args, TO_EYE);
-    else if (args->place)
+    else if (args->position)
         unit_groups(args, TO_POSITION);
     else
         unit_groups(args, TO_EACH);

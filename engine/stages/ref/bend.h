@@ -23,7 +23,7 @@ static bent_ray seen_along(const glint_bend_args *args, int i)
 {
     const glint_derivative_view *view = args->view;
     const glint_bend_camera *camera = args->camera;
-    const double x = args->place[0][i], y = args->place[1][i];
+    const double x = args->screen[0][i], y = args->screen[1][i];
     double seen[3];
     bent_ray out;
     for (int c = 0; c < 3; c++) {
@@ -41,7 +41,7 @@ static bent_ray seen_along(const glint_bend_args *args, int i)
 
 static void bend_lane(const glint_bend_args *args, int i)
 {
-    const bent_ray ray = args->place[0] ? seen_along(args, i) : seen_from_point(args, i);
+    const bent_ray ray = args->screen[0] ? seen_along(args, i) : seen_from_point(args, i);
     const glint_prim *prim = args->prim;
     const glint_derivative_part *part = args->part;
     const bool round = prim->kind == GLINT_PRIM_SPHERE;
@@ -53,7 +53,7 @@ static void bend_lane(const glint_bend_args *args, int i)
         off[c] = point - prim->center[c];
         gradient[c] = round ? off[c] : prim->normal[c];
         carried[c] = ray.moved[c] + ray.far * ray.turned[c];
-        rest += gradient[c] * ((part->place[c] - carried[c]) + part->growth * off[c]);
+        rest += gradient[c] * ((part->position[c] - carried[c]) + part->growth * off[c]);
         rest -= round ? 0 : part->normal[c] * (point - part->pivot[c]);
     }
     const double further = rest / dot_of(gradient, ray.direction), side = dot_of(gradient, normal) < 0 ? -1 : 1;
@@ -63,7 +63,7 @@ static void bend_lane(const glint_bend_args *args, int i)
         args->slope[0][c][i] = moved;
         args->slope[1][c][i] = side * part->normal[c];
         if (round)
-            args->slope[1][c][i] = ((moved - part->place[c]) - off[c] * part->growth) * (side / prim->radius);
+            args->slope[1][c][i] = ((moved - part->position[c]) - off[c] * part->growth) * (side / prim->radius);
         args->slope[2][c][i] = (away * eye[c] - ray.turned[c]) * shorter;
     }
 }

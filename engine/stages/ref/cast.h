@@ -22,9 +22,9 @@ static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const gli
 }
 
 /// Returns the height of a point over a plane. For a point on some surface, it is 0 if it is within rounding.
-static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) place, bool on_surface)
+static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) point, bool on_surface)
 {
-    NAME(vec3) n = NAME(rounded)(prim->normal), q = NAME(sub)(place, NAME(rounded)(prim->center));
+    NAME(vec3) n = NAME(rounded)(prim->normal), q = NAME(sub)(point, NAME(rounded)(prim->center));
     REAL h = NAME(dot)(n, q);
     REAL sizes = (NAME(abs)(n.x * q.x) + NAME(abs)(n.y * q.y)) + NAME(abs)(n.z * q.z);
     return on_surface && prim->normal[3] > 0 ? NAME(zero_within)(h, NAME(ON_FACE) * (sizes + (REAL)prim->normal[3])) : h;
@@ -69,7 +69,8 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_SOLID && args->geometry->solids[prim->item].form == GLINT_FORM_TORUS) {
         const glint_solid *solid = &args->geometry->solids[prim->item];
-        *t = NAME(torus_t)(solid, NAME(unit_place)(solid, prim, origin), NAME(into_unit)(solid, direction), true, inward);
+        *t = NAME(torus_t)(solid, NAME(unit_point)(solid, prim, origin), NAME(into_unit)(solid, direction), true,
+                           inward);
     } else if (prim->kind == GLINT_PRIM_SOLID && inward) {
         const glint_solid *solid = &args->geometry->solids[prim->item];
         NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);

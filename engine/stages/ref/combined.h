@@ -49,7 +49,7 @@ static NAME(stretch) NAME(within_torus)(const glint_geometry_table *geometry, co
 {
     const glint_solid *solid = &geometry->solids[part->item];
     REAL ends[4];
-    NAME(torus_ends)(solid, NAME(unit_place)(solid, part, origin), NAME(into_unit)(solid, direction), own,
+    NAME(torus_ends)(solid, NAME(unit_point)(solid, part, origin), NAME(into_unit)(solid, direction), own,
                      inward != (part->inverted != 0), ends);
     return (NAME(stretch)) { ends[2 * (part->face - 1)], ends[2 * (part->face - 1) + 1] };
 }

@@ -45,12 +45,12 @@ static glint_cone_sample NAME(in_own_cone)(const glint_light_sample *light_sampl
 static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t s, uint32_t i)
 {
     const glint_light_sample *light_sample = args->light_sample[s];
-    const double *place = args->place[0] ? args->place[s] : args->position;
+    const double *center = args->positions[0] ? args->positions[s] : args->position;
     if (NAME(is_cone)(light_sample)) {
         glint_cone_sample sample = NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i);
         return NAME(rounded)(sample.direction);
     }
-    NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(place);
+    NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(center);
     return args->directional ? position
                              : NAME(times)(NAME(sub)(position, NAME(load)(args->point, i)), (REAL)args->scale);
 }

@@ -60,7 +60,7 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uin
     for (int k = 0; k < 3; k++)
         position[k] = light_sample ? light_sample->position[k][i % GLINT_GROUP] : args->position[k];
     if (NAME(is_cone)(light_sample) && args->lit[s][i / GLINT_GROUP] >> i % GLINT_GROUP & 1)
-        memcpy(position, NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i).place,
+        memcpy(position, NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i).position,
                sizeof position);
     bool blocked = !(args->lit[s][i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
     if (!blocked)

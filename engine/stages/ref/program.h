@@ -330,7 +330,7 @@ static void unit(const glint_unit_args *args)
         for (int c = 0; c < 3; c++)
             d[c] = args->camera
                        ? direction_to_eye(args->camera, args->groups[lane / GLINT_GROUP], c, lane % GLINT_GROUP)
-                       : (args->place ? args->place[c] : args->to[c][lane]);
+                       : (args->position ? args->position[c] : args->to[c][lane]);
         for (int c = 0; c < 3 && !args->camera && args->from[0]; c++)
             d[c] -= args->from[c][lane];
         const double length = sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);

@@ -150,7 +150,7 @@ static double height_over(const glint_face *face, const double position[3])
     if (face->axis < 3)
         return face->normal[face->axis] * away[face->axis];
     double h = dot_of(face->normal, away);
-    return fabs(h) <= GLINT_ON_FACE_DOUBLE * face->places ? 0 : h;
+    return fabs(h) <= GLINT_ON_FACE_DOUBLE * face->magnitude ? 0 : h;
 }
 
 static bool is_within(const glint_solid *solid, const glint_prim *prim, const double position[3])

@@ -21,12 +21,12 @@ static NAME(vec3) NAME(into_unit)(const glint_solid *solid, NAME(vec3) v)
 static REAL NAME(zero_within)(REAL x, REAL bound) { return NAME(abs)(x) <= bound ? 0 : x; }
 
 /// Returns the height of a point over a face; 0 if it is on the face within rounding.
-static REAL NAME(over_face)(const glint_face *face, NAME(vec3) place)
+static REAL NAME(over_face)(const glint_face *face, NAME(vec3) point)
 {
-    NAME(vec3) n = NAME(rounded)(face->normal), q = NAME(sub)(place, NAME(rounded)(face->at));
+    NAME(vec3) n = NAME(rounded)(face->normal), q = NAME(sub)(point, NAME(rounded)(face->at));
     if (face->axis < 3)
         return NAME(component)(n, (int)face->axis) * NAME(component)(q, (int)face->axis);
-    return NAME(zero_within)(NAME(dot)(n, q), NAME(ON_FACE) * (REAL)face->places);
+    return NAME(zero_within)(NAME(dot)(n, q), NAME(ON_FACE) * (REAL)face->magnitude);
 }
 
 static REAL NAME(rise)(const glint_face *face, NAME(vec3) direction)
@@ -59,7 +59,7 @@ static void NAME(pass_slab)(NAME(passage) * p, const glint_face *faces, NAME(vec
     }
 }
 
-static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball, double places)
+static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball, double magnitude)
 {
     REAL a = e.x * e.x + e.y * e.y, b = f.x * e.x + f.y * e.y, c = f.x * f.x + f.y * f.y;
     REAL z = f.x * e.y - f.y * e.x, across = z * z;
@@ -70,7 +70,7 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball, dou
         across = NAME(length2)(NAME(cross)(f, e));
     }
     b = -b;
-    c = NAME(zero_within)(c - 1, NAME(ON_FACE) * (REAL)places);
+    c = NAME(zero_within)(c - 1, NAME(ON_FACE) * (REAL)magnitude);
     if (a == 0)
         return (NAME(passage)) { .hit = c <= 0, .in = { .t = -INFINITY }, .out = { .t = INFINITY } };
     REAL disc = b * b < a ? b * b - a * c : a - across;
@@ -79,11 +79,11 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball, dou
     return (NAME(passage)) { .hit = disc >= 0, .in = { .t = NAME(min)(far, other) }, .out = { .t = NAME(max)(far, other) } };
 }
 
-static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e, double places)
+static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e, double magnitude)
 {
     REAL toward = NAME(dot)(from, e), away2 = NAME(length2)(from),
          side = (from.x * from.x + from.y * from.y) - from.z * from.z;
-    REAL off = NAME(POINT_SLACK) * away2 + (NAME(ON_FACE) * (REAL)places) * from.z;
+    REAL off = NAME(POINT_SLACK) * away2 + (NAME(ON_FACE) * (REAL)magnitude) * from.z;
     bool far_off = away2 > 16, on = from.z > 0 && NAME(abs)(side) <= off && !far_off;
     bool anew = far_off || (toward * toward > (REAL)0.875 * (away2 * NAME(length2)(e)) && !on);
     REAL move = anew ? -toward / NAME(dot)(e, e) : 0;
@@ -120,9 +120,9 @@ static NAME(passage)
     bool cylinder = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE;
     bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
     if (solid->form == GLINT_FORM_BALL || cylinder)
-        p = NAME(pass_round)(f, e, solid->form == GLINT_FORM_BALL, solid->places);
+        p = NAME(pass_round)(f, e, solid->form == GLINT_FORM_BALL, solid->magnitude);
     else if (cone)
-        p = NAME(pass_cone)(f, e, solid->places);
+        p = NAME(pass_cone)(f, e, solid->magnitude);
     else if (solid->form == GLINT_FORM_DISK)
         p = NAME(pass_disk)(f, e, -NAME(over_face)(solid->faces, origin) / NAME(rise)(solid->faces, direction));
     if (cylinder || cone)
@@ -142,16 +142,17 @@ static NAME(passage)
 }
 
 /// Returns the vector from the solid's centre to a point, in the space of the unit shape.
-static NAME(vec3) NAME(unit_place)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) place)
+static NAME(vec3) NAME(unit_point)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) point)
 {
-    return NAME(into_unit)(solid, NAME(sub)(place, NAME(rounded)(prim->center)));
+    return NAME(into_unit)(solid, NAME(sub)(point, NAME(rounded)(prim->center)));
 }
 
 /// Returns the distance at which a ray hits a solid; 0: a miss.
 static REAL NAME(solid_t)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
 {
     if (solid->form == GLINT_FORM_TORUS)
-        return NAME(torus_t)(solid, NAME(unit_place)(solid, prim, origin), NAME(into_unit)(solid, direction), false, false);
+        return NAME(torus_t)(solid, NAME(unit_point)(solid, prim, origin), NAME(into_unit)(solid, direction), false,
+                             false);
     NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
     REAL t = p.in.t > 0 ? p.in.t : p.out.t;
     return p.hit && t > 0 ? t : 0;
@@ -196,7 +197,7 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
                                     NAME(vec3) direction, REAL t, NAME(vec3) * normal)
 {
     const bool torus = solid->form == GLINT_FORM_TORUS;
-    NAME(vec3) f = NAME(unit_place)(solid, prim, origin), e = NAME(into_unit)(solid, direction);
+    NAME(vec3) f = NAME(unit_point)(solid, prim, origin), e = NAME(into_unit)(solid, direction);
     NAME(crossing) at = { .t = t };
     if (!torus) {
         NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
@@ -233,7 +234,7 @@ static bool NAME(torus_blocks)(const glint_occlude_args *args, const glint_prim 
     const glint_solid *solid = &args->geometry->solids[prim->item];
     NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     REAL end = args->directional ? (REAL)INFINITY : 1 / (REAL)args->scale;
-    return NAME(torus_parts)(solid, NAME(unit_place)(solid, prim, point), NAME(into_unit)(solid, d), end, inside, own,
+    return NAME(torus_parts)(solid, NAME(unit_point)(solid, prim, point), NAME(into_unit)(solid, d), end, inside, own,
                              back);
 }
 

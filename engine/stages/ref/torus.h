@@ -65,7 +65,7 @@ static void NAME(find_turns)(NAME(torus_line) * l)
 static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid, NAME(vec3) f, NAME(vec3) e,
                                  bool leaves, bool inward)
 {
-    REAL beyond, within = NAME(ON_FACE) * (REAL)solid->places;
+    REAL beyond, within = NAME(ON_FACE) * (REAL)solid->magnitude;
     REAL round = NAME(square_root)(f.x * f.x + f.y * f.y);
     l->begin_gap = NAME(torus_gap)(f, l->tube, &beyond);
     l->on = leaves || NAME(abs)(l->begin_gap) <= within * (2 * l->tube + within);

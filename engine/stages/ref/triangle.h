@@ -137,11 +137,11 @@ static NAME(parted) NAME(part)(const glint_occlude_args *args, const glint_prim 
 }
 
 /// Returns whether a point is within a triangle's bounds, enlarged by `loose`.
-static bool NAME(in_box)(const NAME(vec3) corner[3], NAME(vec3) place, REAL loose)
+static bool NAME(in_box)(const NAME(vec3) corner[3], NAME(vec3) point, REAL loose)
 {
     for (int k = 0; k < 3; k++) {
         REAL a = NAME(component)(corner[0], k), b = NAME(component)(corner[1], k), c = NAME(component)(corner[2], k);
-        REAL at = NAME(component)(place, k);
+        REAL at = NAME(component)(point, k);
         if (!(NAME(min)(NAME(min)(a, b), c) <= at + loose && NAME(max)(NAME(max)(a, b), c) >= at - loose))
             return false;
     }
@@ -203,11 +203,11 @@ static REAL NAME(spread)(NAME(parted) plane)
 
 /// Returns whether a point is in the plane within rounding; on_surface: the point is on some surface, and has the
 /// rounding error of such points.
-static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) place, bool on_surface)
+static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) point, bool on_surface)
 {
-    REAL rounding, h = NAME(height)(plane, prim, place, &rounding);
+    REAL rounding, h = NAME(height)(plane, prim, point, &rounding);
     if (on_surface)
-        rounding = rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(place));
+        rounding = rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(point));
     return NAME(abs)(h) <= rounding;
 }
 

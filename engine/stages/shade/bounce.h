@@ -33,10 +33,10 @@ static inline unsigned R(bounce_lanes)(const glint_bounce_args *args, const vr d
 
 static void R(bounce)(const glint_bounce_args *args)
 {
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const uint32_t g = place.g;
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        const uint32_t g = cursor.g;
         const size_t at = (size_t)g * GLINT_GROUP;
-        const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+        const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
         unsigned through = 0;
         for (int i = 0; args->wanted[g] && i < GLINT_GROUP; i += VR) {
             vr d[3];

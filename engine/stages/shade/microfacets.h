@@ -12,11 +12,11 @@
 static void R(view)(const glint_view_args *args)
 {
     _Alignas(64) float along[GLINT_GROUP], length2[GLINT_GROUP];
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const size_t at = (size_t)place.g * GLINT_GROUP;
-        if (!args->hits[place.g])
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        const size_t at = (size_t)cursor.g * GLINT_GROUP;
+        if (!args->hits[cursor.g])
             continue;
-        const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+        const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
         for (int i = 0; i < GLINT_GROUP; i += VR) {
             vr n[3], d[3];
             R(load3)(args->normal, at + i, n);
@@ -93,12 +93,12 @@ static void R(facet)(const glint_facet_args *args)
     const bool area = args->light_sample[0] != NULL;
     if (area)
         R(load_light_samples)(args->light_sample, args->sample_count, &light_samples);
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const size_t at = (size_t)place.g * GLINT_GROUP;
-        const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        const size_t at = (size_t)cursor.g * GLINT_GROUP;
+        const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
         bool placed = !R(is_cone)(args->light_sample[0]);
         for (uint32_t s = 0; s < args->sample_count; s++) {
-            if (!R(has_facets)(args, at, args->lit[s][place.g]))
+            if (!R(has_facets)(args, at, args->lit[s][cursor.g]))
                 continue;
             if (!placed)
                 R(place_in_cone)(args->light_sample, args->sample_count, args->scale, args->point, args->normal, at,

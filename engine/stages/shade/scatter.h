@@ -41,12 +41,12 @@ static inline void R(scatter_lanes)(const glint_scatter_args *args, vr u, vr v, 
 /// Computes the directions of the first `count` of some groups; the others are undefined.
 static void R(scatter_groups)(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS], uint32_t count)
 {
-    _Alignas(64) double place[2][DRAWN];
+    _Alignas(64) double points[2][DRAWN];
     _Alignas(64) real square[2][DRAWN];
-    scrambled_groups(args, groups, place);
+    scrambled_groups(args, groups, points);
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < DRAWN; i++)
-            square[k][i] = (real)place[k][i];
+            square[k][i] = (real)points[k][i];
     for (uint32_t k = 0; k < count; k++)
         for (uint32_t i = 0; i < GLINT_GROUP; i += VR) {
             const uint32_t from = k * GLINT_GROUP + i;

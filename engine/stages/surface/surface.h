@@ -117,7 +117,7 @@ INNER void R(find_on_solid)(const glint_surface_args *args, R(seen_slot) * slot,
 {
     const R(seen_prim) *seen = &slot->prim;
     const glint_solid *solid = &args->solids[seen->prim->item];
-    R(solid_start) start = { .place = from, .height = args->camera ? slot->height : NULL };
+    R(solid_start) start = { .origin = from, .height = args->camera ? slot->height : NULL };
     for (int k = 0; k < 3; k++)
         start.f[k] = r_set(seen->f[k]);
     if (!args->camera)
@@ -410,11 +410,11 @@ INNER void R(place_whole)(const glint_surface_args *args, R(seen_slot) * slot, R
 
 /// Computes one group with hits: its triangles together, if there are several, and the rest primitive by primitive.
 INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
-                            R(group_place) place, R(surface_outputs) outputs)
+                            R(group_cursor) cursor, R(surface_outputs) outputs)
 {
-    const uint32_t g = place.g;
+    const uint32_t g = cursor.g;
     const size_t at = (size_t)g * GLINT_GROUP;
-    const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
     unsigned rest = args->hits[g], back = 0, dark = 0;
     if (rest != 0xffff)
         R(clear_surface)(args, at);
@@ -467,11 +467,11 @@ INNER void R(surface_groups)(const glint_surface_args *args, R(surface_outputs) 
     R(point_box) box;
     R(begin_walk)(args, &walk);
     R(empty_box)(&box);
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        if (args->hits[place.g])
-            R(surface_group)(args, &walk, &box, place, outputs);
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        if (args->hits[cursor.g])
+            R(surface_group)(args, &walk, &box, cursor, outputs);
         else if (outputs != R(POINTS_ONLY))
-            args->back[place.g] = args->dark[place.g] = 0;
+            args->back[cursor.g] = args->dark[cursor.g] = 0;
     }
     R(end_walk)(args, &walk, &box);
 }

@@ -52,10 +52,10 @@ static inline void R(vertex_lanes)(const glint_vertex_args *args, const glint_pr
 
 static void R(vertex)(const glint_vertex_args *args)
 {
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const size_t at = (size_t)place.g * GLINT_GROUP;
-        const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
-        unsigned rest = args->wanted[place.g];
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
+        const size_t at = (size_t)cursor.g * GLINT_GROUP;
+        const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
+        unsigned rest = args->wanted[cursor.g];
         while (rest) {
             const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(rest)];
             const unsigned lanes = lanes_equal(args->prim + at, id) & rest;

@@ -456,11 +456,11 @@ static inline void set_face(glint_face *face, const double normal[3], const doub
                             double reach)
 {
     const double length = length3(normal);
-    face->places = 0;
+    face->magnitude = 0;
     for (int c = 0; c < 3; c++) {
         face->normal[c] = normal[c] / length;
         face->at[c] = at[c];
-        face->places += fabs(face->normal[c]) * ((fabs(center[c]) + reach) + fabs(at[c]));
+        face->magnitude += fabs(face->normal[c]) * ((fabs(center[c]) + reach) + fabs(at[c]));
     }
     face->axis = (uint32_t)glint_axis_along(face->normal);
 }
@@ -472,11 +472,11 @@ static inline void set_solid_faces(test_scene *scene, const glint_prim *prim)
     const int slabs = glint_slab_count(solid->form);
     double reach = 0;
     solid->faces = scene->faces + scene->face_count;
-    solid->places = 1;
+    solid->magnitude = 1;
     for (int i = 0; i < 9; i++)
         reach += (solid->form == GLINT_FORM_TORUS ? 2 : 1) * fabs(solid->forward[i / 3][i % 3]);
     for (int i = 0; i < 9; i++)
-        solid->places += 2 * fabs(solid->inverse[i / 3][i % 3]) * (reach + 2 * fabs(prim->center[i % 3]));
+        solid->magnitude += 2 * fabs(solid->inverse[i / 3][i % 3]) * (reach + 2 * fabs(prim->center[i % 3]));
     for (int i = 0; i < 2 * slabs; i++) {
         const int k = slabs == 1 ? 2 : i / 2;
         const double low = solid->form == GLINT_FORM_DISK || cone ? 0 : -1, high = solid->form == GLINT_FORM_DISK ? 0 : 1;
