@@ -64,17 +64,17 @@ static void test_fast_places(void **state)
 {
     (void)state;
     uint8_t *data = make_band();
-    void *stream[PLACES_TRIED];
+    void *stream[ADDRESSES_TRIED];
     uint32_t third;
     memcpy(&third, data + 2, sizeof third);
-    for (int i = 0; i < PLACES_TRIED; i++) { // each at its own address
+    for (int i = 0; i < ADDRESSES_TRIED; i++) { // each at its own address
         stream[i] = map_stream(bucket_of(third));
         assert_non_null(stream[i]);
     }
     glint_bytes want = band_at(data, stream[0]);
-    for (int i = 1; i < PLACES_TRIED; i++)
+    for (int i = 1; i < ADDRESSES_TRIED; i++)
         assert_true(same_at(data, stream[i], &want));
-    for (int i = 0; i < PLACES_TRIED; i++)
+    for (int i = 0; i < ADDRESSES_TRIED; i++)
         munmap(stream[i], STREAM_BYTES);
     size_t different = 0; // otherwise the test would prove nothing
     for (uint64_t number = 0; number < OTHER_PLACES; number++) {
@@ -98,7 +98,7 @@ static void test_buckets(void **state)
         const uint32_t bytes = i * 0x9e3779b1;
         void *stream = map_stream(bucket_of(bytes));
         assert_non_null(stream);
-        assert_int_equal(bucket_of((uint32_t)((uintptr_t)stream >> PLACE_SHIFT)), bucket_of(bytes));
+        assert_int_equal(bucket_of((uint32_t)((uintptr_t)stream >> ADDRESS_SHIFT)), bucket_of(bytes));
         munmap(stream, STREAM_BYTES);
     }
 }
