@@ -228,7 +228,7 @@ static void make_lab(glint_flip *flip, workshop *w, size_t pixels)
     }
 }
 
-static void keep_length(const float *x, const float *y, size_t pixels, float *out)
+static void store_length(const float *x, const float *y, size_t pixels, float *out)
 {
     for (size_t i = 0; i < pixels; i++)
         out[i] = sqrtf(x[i] * x[i] + y[i] * y[i]);
@@ -247,7 +247,7 @@ static void find_features(glint_flip *flip, workshop *w, size_t pixels)
         filter_rows(flip, w->opponent[0], &k, w->padded, w->rows[1]);
         filter_columns(flip, w->rows[1], &smooth, 1, w->blurred[0]);
         filter_columns(flip, w->rows[0], &k, 1, w->blurred[1]);
-        keep_length(w->blurred[0], w->blurred[1], pixels, order == 1 ? flip->edge : flip->point);
+        store_length(w->blurred[0], w->blurred[1], pixels, order == 1 ? flip->edge : flip->point);
     }
 }
 

@@ -182,10 +182,10 @@ const glint_image *glint_reference_image(const glint_reference *reference)
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
 
-/// Measures errors in linear light. kept: the light for each pixel value, to compare the light stored in a file; NULL:
-/// compares the image's light.
-static void compare_light(const glint_reference *reference, const glint_image *image, const codes *c, const float *kept,
-                          glint_picture_error *out)
+/// Measures errors in linear light. light_of_code: the light for each pixel value, to compare the light stored in a
+/// file; NULL: compares the image's light.
+static void compare_light(const glint_reference *reference, const glint_image *image, const codes *c,
+                          const float *light_of_code, glint_picture_error *out)
 {
     const size_t pixels = pixel_count(image);
     const double white = glint_tone_curve_white(reference->tone.curve) / (double)glint_tone_gain(&reference->tone);
@@ -194,9 +194,9 @@ static void compare_light(const glint_reference *reference, const glint_image *i
         for (size_t k = 0; k < 3; k++) {
             const double r = reference->image->plane[GLINT_PASS_BEAUTY][k][i];
             double x = image->plane[GLINT_PASS_BEAUTY][k][i];
-            if (kept && x <= white) {
-                const double light =
-                    kept[c->bits == 16 ? ((const uint16_t *)c->rgb)[3 * i + k] : ((const uint8_t *)c->rgb)[3 * i + k]];
+            if (light_of_code && x <= white) {
+                const double light = light_of_code[c->bits == 16 ? ((const uint16_t *)c->rgb)[3 * i + k]
+                                                                 : ((const uint8_t *)c->rgb)[3 * i + k]];
                 x = isfinite(light) ? light : x;
             }
             squares += (x - r) * (x - r);
@@ -235,15 +235,15 @@ static glint_status measure(const glint_reference *reference, const glint_image 
         status = make_codes(reference->image, reference->tone, bits, &theirs, error);
     if (!status)
         status = prepare_flip(image, &reference->tone, file_bits ? file_bits : 16, &flip, error);
-    float *kept = !status && file_bits ? scene_light(&reference->tone, bits) : NULL;
-    if (!status && file_bits && !kept)
+    float *light_of_code = !status && file_bits ? scene_light(&reference->tone, bits) : NULL;
+    if (!status && file_bits && !light_of_code)
         status = glint_fail_nomem(error);
     if (!status) {
-        compare_light(reference, image, &mine, kept, out);
+        compare_light(reference, image, &mine, light_of_code, out);
         compare_codes(&mine, &theirs, pixel_count(image), out);
         out->flip = glint_flip_mean(reference->flip, flip);
     }
-    free(kept);
+    free(light_of_code);
     glint_flip_destroy(flip);
     free(mine.rgb);
     free(theirs.rgb);

@@ -9,7 +9,7 @@
 #include <stdatomic.h>
 
 #define BAND_BYTES ((size_t)1 << 17) // least size of a band, filtered; fixed, so that no setting changes the file
-#define KEPT_WORK_BYTES ((size_t)1 << 24) // a worker with a larger buffer frees it after use
+#define RETAINED_WORK_BYTES ((size_t)1 << 24) // a worker with a larger buffer frees it after use
 #define FILTER_SUB 1
 #define VECTOR 16
 
@@ -268,9 +268,9 @@ static bool deflate_picture(glint_bands *bands, picture *p, const glint_png_sour
         for (size_t i = 0; i < count; i++)
             make_item(&t, i, 0);
     for (int i = 0; i < bands->threads; i++)
-        if (bands->worker[i].raw.capacity > KEPT_WORK_BYTES)
+        if (bands->worker[i].raw.capacity > RETAINED_WORK_BYTES)
             free_worker(&bands->worker[i]);
-    if (bands->stream.capacity > KEPT_WORK_BYTES)
+    if (bands->stream.capacity > RETAINED_WORK_BYTES)
         free_bytes(&bands->stream);
     if (atomic_load(&t.failed))
         return false;

@@ -154,40 +154,40 @@ typedef struct streams {
     uint32_t count, oldest;
 } streams;
 
-static void free_streams(streams *kept)
+static void free_streams(streams *cache)
 {
-    for (uint32_t i = 0; i < kept->count; i++)
-        munmap(kept->stream[i], STREAM_BYTES);
+    for (uint32_t i = 0; i < cache->count; i++)
+        munmap(cache->stream[i], STREAM_BYTES);
 }
 
 /// Caches a stream. If the cache is full, it replaces the oldest one.
-static void keep_stream(streams *kept, void *stream, uint32_t bucket)
+static void cache_stream(streams *cache, void *stream, uint32_t bucket)
 {
-    uint32_t at = kept->count;
+    uint32_t at = cache->count;
     if (at < STREAMS) {
-        kept->count++;
+        cache->count++;
     } else {
-        at = kept->oldest;
-        munmap(kept->stream[at], STREAM_BYTES);
-        kept->oldest = (at + 1) % STREAMS;
+        at = cache->oldest;
+        munmap(cache->stream[at], STREAM_BYTES);
+        cache->oldest = (at + 1) % STREAMS;
     }
-    kept->stream[at] = stream;
-    kept->bucket[at] = (uint16_t)bucket;
+    cache->stream[at] = stream;
+    cache->bucket[at] = (uint16_t)bucket;
 }
 
 /// Returns the stream for a band that begins with these bytes. NULL: no address gives their bucket.
-static void *find_stream(streams *kept, const uint8_t *data, size_t size)
+static void *find_stream(streams *cache, const uint8_t *data, size_t size)
 {
     uint32_t third = 0;
     if (size >= 2 + sizeof third)
         memcpy(&third, data + 2, sizeof third);
     const uint32_t bucket = bucket_of(third);
-    for (uint32_t i = 0; i < kept->count; i++)
-        if (kept->bucket[i] == bucket)
-            return kept->stream[i];
+    for (uint32_t i = 0; i < cache->count; i++)
+        if (cache->bucket[i] == bucket)
+            return cache->stream[i];
     void *stream = map_stream(bucket);
     if (stream)
-        keep_stream(kept, stream, bucket);
+        cache_stream(cache, stream, bucket);
     return stream;
 }
 #else
@@ -195,11 +195,11 @@ typedef struct streams {
     char none; ///< the address of the stream does not matter
 } streams;
 
-static void free_streams(streams *kept) { (void)kept; }
+static void free_streams(streams *cache) { (void)cache; }
 
-static void *find_stream(streams *kept, const uint8_t *data, size_t size)
+static void *find_stream(streams *cache, const uint8_t *data, size_t size)
 {
-    (void)kept, (void)data, (void)size;
+    (void)cache, (void)data, (void)size;
     return NULL;
 }
 #endif

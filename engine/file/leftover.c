@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 #define FOREIGN_AGE_S (24 * 3600)
-#define FOLDERS_KEPT 16 // the folders searched most recently
+#define FOLDERS_CACHED 16 // the folders searched most recently
 #define LIVE_MAX 64 // drafts that a signal removes, at most
 
 void glint_host_name(char out[GLINT_HOST_SIZE])
@@ -109,18 +109,18 @@ void glint_drafts_collect(const char *path)
 static void collect_once(const char *path)
 {
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    static struct { dev_t device; ino_t number; } seen[FOLDERS_KEPT];
+    static struct { dev_t device; ino_t number; } seen[FOLDERS_CACHED];
     static size_t count;
     struct stat info;
     if (stat(path, &info) != 0)
         return;
     bool is_new = true;
     pthread_mutex_lock(&lock);
-    for (size_t i = 0; i < (count < FOLDERS_KEPT ? count : FOLDERS_KEPT); i++)
+    for (size_t i = 0; i < (count < FOLDERS_CACHED ? count : FOLDERS_CACHED); i++)
         is_new = is_new && (seen[i].device != info.st_dev || seen[i].number != info.st_ino);
     if (is_new) {
-        seen[count % FOLDERS_KEPT].device = info.st_dev;
-        seen[count++ % FOLDERS_KEPT].number = info.st_ino;
+        seen[count % FOLDERS_CACHED].device = info.st_dev;
+        seen[count++ % FOLDERS_CACHED].number = info.st_ino;
     }
     pthread_mutex_unlock(&lock);
     if (is_new)

@@ -27,7 +27,7 @@ static void give_bytes(png_structp png, png_bytep out, size_t size)
     r->at += size;
 }
 
-static void keep_message(png_structp png, png_const_charp message)
+static void store_message(png_structp png, png_const_charp message)
 {
     reader *r = png_get_error_ptr(png);
     snprintf(r->message, sizeof r->message, "%s", message);
@@ -38,7 +38,7 @@ static void keep_message(png_structp png, png_const_charp message)
 static void heed_warning(png_structp png, png_const_charp message)
 {
     if (strstr(message, "emory"))
-        keep_message(png, message);
+        store_message(png, message);
 }
 
 static void read_header(reader *r)
@@ -90,7 +90,7 @@ glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, 
     r->size = size;
     bool done = false;
     snprintf(r->message, sizeof r->message, "out of memory");
-    r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, keep_message, heed_warning);
+    r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, store_message, heed_warning);
     r->info = r->png ? png_create_info_struct(r->png) : NULL;
     if (r->info)
         done = read_container(r);

@@ -270,7 +270,7 @@ static bool is_color(glint_pass pass)
            pass != GLINT_PASS_REFINED;
 }
 
-static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
+static glint_status fail_not_stored(const glint_image *image, glint_pass pass, glint_error *error)
 {
     if (pass == GLINT_PASS_BEAUTY && image->codes)
         return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds pixel values of another tone curve, and "
@@ -336,7 +336,7 @@ static glint_status open_rows(const glint_image *image, const glint_write_desc *
         source->row = row_of_codes;
         source->stamp = image->row_stamp;
     } else if (!p->plane[0]) {
-        return fail_not_kept(image, desc->pass, error);
+        return fail_not_stored(image, desc->pass, error);
     } else if (is_color(desc->pass)) {
         status = glint_tone_table_shared(&desc->tone, &p->table, error);
         p->gain = glint_tone_gain(&desc->tone);
@@ -443,7 +443,7 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return glint_exr_encode(image, desc->tone.bits == 16, desc->text, desc->text_count, out, error);
     float *const *plane = glint_image_planes(image, desc->pass);
     if (!plane[0])
-        return fail_not_kept(image, desc->pass, error);
+        return fail_not_stored(image, desc->pass, error);
     const bool done = kind == GLINT_FILE_NPY ? glint_npy_encode(image->width, image->height, channels, plane, out)
                                              : glint_pfm_encode(image->width, image->height, channels, plane, out);
     return done ? GLINT_OK : glint_fail_nomem(error);

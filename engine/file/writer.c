@@ -277,7 +277,7 @@ void glint_writer_destroy(glint_writer *writer)
 // ---- Jobs ---------------------------------------------------------------------------------------------------------
 
 /// Copies a string to *at and moves *at past the copy.
-static const char *keep_string(char **at, const char *string)
+static const char *copy_string(char **at, const char *string)
 {
     if (!string)
         return NULL;
@@ -305,11 +305,11 @@ static job *make_job(const glint_write_desc *desc)
     }
     glint_text *text = (glint_text *)(j + 1);
     char *at = (char *)(text + desc->text_count);
-    j->desc.path = keep_string(&at, desc->path);
+    j->desc.path = copy_string(&at, desc->path);
     j->desc.text = text;
     for (size_t i = 0; i < desc->text_count; i++) {
-        text[i].keyword = keep_string(&at, desc->text[i].keyword);
-        text[i].value = keep_string(&at, desc->text[i].value);
+        text[i].keyword = copy_string(&at, desc->text[i].keyword);
+        text[i].value = copy_string(&at, desc->text[i].value);
     }
     return j;
 }

@@ -153,7 +153,7 @@ static void choose_frame(glint_geometry *geometry)
 }
 
 /// Marks primitives whose bounding sphere is much larger than themselves, for segments to a light.
-static void keep_box(const glint_geometry *geometry, const glint_prim *prim)
+static void store_box(const glint_geometry *geometry, const glint_prim *prim)
 {
     glint_box box;
     if (prim->kind != GLINT_PRIM_SOLID && prim->kind != GLINT_PRIM_COMBINED)
@@ -187,7 +187,7 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
         prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
             glint_prim_place_sphere(&geometry->table, prim);
-            keep_box(geometry, prim);
+            store_box(geometry, prim);
             index->box_count++;
         } else {
             for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_COMBINED; c++) {

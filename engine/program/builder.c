@@ -109,8 +109,8 @@ static glint_status share(glint_builder *builder, const glint_ssa_node *node, ui
     return GLINT_OK;
 }
 
-glint_status glint_builder_keep(glint_builder *builder, uint16_t kind, uint32_t operand, double number, glint_value *out,
-                                glint_error *error)
+glint_status glint_builder_intern(glint_builder *builder, uint16_t kind, uint32_t operand, double number,
+                                  glint_value *out, glint_error *error)
 {
     const glint_ssa_node node = { .op = kind, .operand = { operand }, .number = number };
     return share(builder, &node, 1, out, error);
@@ -120,7 +120,7 @@ glint_status glint_builder_number(glint_builder *builder, double number, glint_v
 {
     GLINT_REFUSE_NULL(builder, error);
     GLINT_REFUSE_NULL(out, error);
-    return glint_builder_keep(builder, GLINT_SSA_NUMBER, 0, number, out, error);
+    return glint_builder_intern(builder, GLINT_SSA_NUMBER, 0, number, out, error);
 }
 
 glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error)

@@ -45,8 +45,8 @@ glint_status glint_builder_load(glint_builder *builder, const glint_program *pro
                                 glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX], glint_error *error);
 
 /// Adds a value that is not the result of an operation: `kind` of node, with its first operand and its number.
-glint_status glint_builder_keep(glint_builder *builder, uint16_t kind, uint32_t operand, double number, glint_value *out,
-                                glint_error *error);
+glint_status glint_builder_intern(glint_builder *builder, uint16_t kind, uint32_t operand, double number,
+                                  glint_value *out, glint_error *error);
 
 /// Computes the results of an operation on numbers with the reference kernels.
 void glint_fold(glint_op op, const glint_texture *texture, const double *operands, double results[GLINT_RESULTS_MAX]);

@@ -28,7 +28,7 @@ glint_status glint_builder_parameter(glint_builder *builder, double number, cons
         builder->parameters = parameters;
         memcpy(parameters[builder->parameter_count++], all, sizeof all);
     }
-    return glint_builder_keep(builder, GLINT_SSA_PARAMETER, i, number, out, error);
+    return glint_builder_intern(builder, GLINT_SSA_PARAMETER, i, number, out, error);
 }
 
 /// Copies one node of another builder into `to`. open: parameters stay parameters.
@@ -41,7 +41,7 @@ static glint_status copy_node(const glint_builder *from, uint32_t i, bool open, 
     if (node->op == GLINT_SSA_INPUT)
         return glint_builder_input(to, (glint_input)node->operand[0], &map[i], error);
     if (node->op == GLINT_SSA_PARAMETER && open)
-        return glint_builder_keep(to, GLINT_SSA_PARAMETER, node->operand[0], node->number, &map[i], error);
+        return glint_builder_intern(to, GLINT_SSA_PARAMETER, node->operand[0], node->number, &map[i], error);
     if (!glint_ssa_is_op(node))
         return glint_builder_number(to, node->number, &map[i], error);
     if (node->part > 0) // added together with the first result

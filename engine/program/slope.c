@@ -11,7 +11,7 @@ static glint_value two(glint_slope_maker *s, glint_op op, glint_value a, glint_v
 
 // ---- The program --------------------------------------------------------------------------------------------------
 
-static void find_what_varies(glint_slope_maker *s, uint32_t inputs)
+static void find_varying(glint_slope_maker *s, uint32_t inputs)
 {
     const glint_ssa_node *nodes = s->builder->nodes;
     for (uint32_t i = 0; i < s->count; i++) {
@@ -56,7 +56,7 @@ static void begin(glint_slope_maker *s, const glint_program *program, uint32_t i
     if (!s->status && (!s->given || !s->varies))
         s->status = glint_fail_nomem(s->error);
     if (!s->status)
-        find_what_varies(s, inputs);
+        find_varying(s, inputs);
 }
 
 static glint_status end(glint_slope_maker *s)
@@ -195,7 +195,8 @@ static void find_slopes(glint_slope_maker *s, glint_value *slope)
         const glint_ssa_node node = s->builder->nodes[i];
         slope[i] = GLINT_SLOPE_NOTHING;
         if (s->varies[i] && node.op == GLINT_SSA_INPUT)
-            s->status = glint_builder_keep(s->builder, GLINT_SSA_INPUT, GLINT_INPUT_COUNT + node.operand[0], 0, &slope[i], s->error);
+            s->status = glint_builder_intern(s->builder, GLINT_SSA_INPUT, GLINT_INPUT_COUNT + node.operand[0], 0,
+                                             &slope[i], s->error);
         else if (s->varies[i] && glint_ssa_is_op(&node))
             slope[i] = find_slope(s, i, slope);
     }
@@ -240,9 +241,9 @@ glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, 
 
 /// Marks the values that depend on parameter number `parameter`. Parameters have the same numbers in the copy as in the
 /// builder.
-static void find_what_changes(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
+static void find_changing(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
-    find_what_varies(s, 0);
+    find_varying(s, 0);
     for (uint32_t i = 0; i < s->count; i++) {
         const glint_ssa_node *node = &s->builder->nodes[i];
         if (node->op == GLINT_SSA_PARAMETER)
@@ -280,7 +281,7 @@ glint_status glint_builder_tangent(const glint_builder *builder, const glint_val
     if (!s.status && (!s.given || !s.varies))
         s.status = glint_fail_nomem(error);
     if (!s.status)
-        find_what_changes(&s, builder, parameter);
+        find_changing(&s, builder, parameter);
     for (size_t k = 0; k < count && !s.status; k++) {
         for (uint32_t i = 0; i < s.count; i++)
             s.given[i] = GLINT_SLOPE_NOTHING;

@@ -26,7 +26,7 @@ typedef struct values {
     uint32_t *last; ///< the last reader of each value in the part being written
     uint16_t *slot; ///< row or input of each value in the part being written
     glint_flow flow;
-    uint32_t kept[GLINT_PROGRAM_OUTPUTS_MAX], kept_count;
+    uint32_t cached[GLINT_PROGRAM_OUTPUTS_MAX], cached_count;
 } values;
 
 static void destroy(values *v)
@@ -192,11 +192,11 @@ static bool find_sides(values *v)
         if (is_dynamic(v, i) || (maker != NO_VALUE && v->second[maker]) ||
             !glint_flow_near_sink(&v->flow, node_of_value(v, i)))
             continue;
-        if (v->kept_count == GLINT_PROGRAM_OUTPUTS_MAX)
+        if (v->cached_count == GLINT_PROGRAM_OUTPUTS_MAX)
             return false;
-        v->kept[v->kept_count++] = i;
+        v->cached[v->cached_count++] = i;
     }
-    return v->kept_count > 0;
+    return v->cached_count > 0;
 }
 
 // ---- The code of a part -------------------------------------------------------------------------------------------
@@ -285,11 +285,11 @@ static bool write_parts(values *v, const uint32_t *outputs, glint_split *split)
         first[i] = !first[i];
     for (uint32_t i = 0; i < GLINT_INPUT_COUNT; i++)
         v->slot[i] = (uint16_t)(GLINT_ROW_INPUT + i);
-    if (!write_part(v, first, v->kept, v->kept_count, &split->first))
+    if (!write_part(v, first, v->cached, v->cached_count, &split->first))
         return false;
-    for (uint32_t k = 0; k < v->kept_count; k++) {
-        v->slot[v->kept[k]] = (uint16_t)(GLINT_ROW_INPUT + k);
-        split->truths |= cost_of_value(v, v->kept[k]) == COST_OF_TRUTH ? 1u << k : 0;
+    for (uint32_t k = 0; k < v->cached_count; k++) {
+        v->slot[v->cached[k]] = (uint16_t)(GLINT_ROW_INPUT + k);
+        split->truths |= cost_of_value(v, v->cached[k]) == COST_OF_TRUTH ? 1u << k : 0;
     }
     memcpy(split->second.outputs, v->code->outputs, sizeof split->second.outputs); // for the numbers
     return write_part(v, v->second, outputs, v->code->output_count, &split->second);

@@ -125,9 +125,9 @@ void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan)
         forget_lights(reuse);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_key key = plan->lights[i].key;
-        reuse->keep_light[i] = glint_key_equal(reuse->light[i], key);
-        if (!reuse->keep_light[i] && looks && is_dear(plan, i))
-            reuse->keep_light[i] = find_light(reuse, i, key);
+        reuse->caches_light[i] = glint_key_equal(reuse->light[i], key);
+        if (!reuse->caches_light[i] && looks && is_dear(plan, i))
+            reuse->caches_light[i] = find_light(reuse, i, key);
         reuse->light[i] = key;
     }
 }

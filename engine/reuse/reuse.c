@@ -81,12 +81,12 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         glint_reuse_clear(reuse);
         make_slots(reuse, plan, tile_count, lights);
     }
-    reuse->keep_cast = glint_earlier_find_tiles(reuse, plan->keys[GLINT_STAGE_CAST]);
+    reuse->caches_cast = glint_earlier_find_tiles(reuse, plan->keys[GLINT_STAGE_CAST]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
-    reuse->keep_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
+    reuse->caches_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
     glint_splits_begin(&reuse->splits, plan);
-    reuse->keep_view = reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
+    reuse->caches_view = reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
     reuse->view = plan->keys[GLINT_STAGE_VIEW];
     glint_earlier_lights(reuse, plan);
 }

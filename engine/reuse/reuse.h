@@ -130,7 +130,7 @@ typedef struct glint_reuse {
     uint32_t carry_wait, carry_pause;
     double scale; ///< of the geometry's table
     // results with a key seen before, which this frame caches
-    bool keep_cast, keep_pattern, keep_view, keep_light[GLINT_CACHED_LIGHTS];
+    bool caches_cast, caches_pattern, caches_view, caches_light[GLINT_CACHED_LIGHTS];
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.

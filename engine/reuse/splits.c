@@ -163,7 +163,7 @@ static void assign_slots(glint_splits *splits, glint_split_material *m, const gl
 }
 
 /// Returns the key of everything that the cached values depend on.
-static glint_key kept_key(const glint_splits *splits)
+static glint_key cached_key(const glint_splits *splits)
 {
     glint_key key = splits->surface;
     for (uint32_t i = 0; i < splits->material_count; i++)
@@ -208,5 +208,5 @@ void glint_splits_begin(glint_splits *splits, const glint_plan *plan)
     splits->numbers = splits->planes = splits->truths = 0;
     for (uint32_t i = 0; any && i < plan->material_count; i++)
         assign_slots(splits, &splits->of[i], patterns, patterns->of[i].made);
-    splits->key = any ? kept_key(splits) : none;
+    splits->key = any ? cached_key(splits) : none;
 }

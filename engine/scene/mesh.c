@@ -99,7 +99,7 @@ static uint32_t material_of(const builder *b)
     return b->desc->material_index ? b->desc->material_index[b->number - 1] : 0;
 }
 
-static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, uint32_t j, uint32_t k)
+static glint_status add_triangle(builder *b, size_t first_corner, uint32_t i, uint32_t j, uint32_t k)
 {
     glint_mesh *mesh = b->mesh;
     if (mesh->triangle_count == MOST)
@@ -164,7 +164,7 @@ static glint_status cut_fan(builder *b, size_t first_corner)
     for (uint32_t i = 1; i + 1 < b->face.size && !status; i++) {
         glint_polygon_cross(&b->face, 0, i, i + 1, cross);
         if (!is_zero(cross))
-            status = keep_triangle(b, first_corner, 0, i, i + 1);
+            status = add_triangle(b, first_corner, 0, i, i + 1);
     }
     return status;
 }
@@ -183,7 +183,7 @@ static glint_status cut_ears(builder *b, size_t first_corner)
     }
     for (size_t i = 0; i < b->ears.triangle_count && !status; i++) {
         const uint32_t *corners = b->ears.triangles[i];
-        status = keep_triangle(b, first_corner, corners[0], corners[1], corners[2]);
+        status = add_triangle(b, first_corner, corners[0], corners[1], corners[2]);
     }
     return status;
 }

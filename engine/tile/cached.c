@@ -29,9 +29,9 @@ static void forget(glint_cached_tile *cached, uint32_t light_count)
 /// Returns whether hits and lights are those of the last frame, so that only shading may have to run.
 static bool is_settled(const glint_reuse *reuse, const glint_plan *plan)
 {
-    bool settled = reuse->keep_cast && plan->light_count == reuse->light_count;
+    bool settled = reuse->caches_cast && plan->light_count == reuse->light_count;
     for (uint32_t i = 0; i < reuse->light_count; i++)
-        settled = settled && reuse->keep_light[i];
+        settled = settled && reuse->caches_light[i];
     return settled;
 }
 
@@ -143,7 +143,7 @@ bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint
     tile->at.prim = tile->hit.prim;
     tile->at.hits = tile->hit.mask;
     tile->at.sampled = tile->hit.mask;
-    if (known || (cached && reuse->keep_cast && (k ? cached->t != NULL : glint_reuse_hold_cast(reuse, cached)))) {
+    if (known || (cached && reuse->caches_cast && (k ? cached->t != NULL : glint_reuse_hold_cast(reuse, cached)))) {
         tile->at.t = (char *)cached->t + first * reuse->real_size;
         tile->at.prim = cached->prim + first;
         tile->at.hits = cached->hits + first / GLINT_GROUP;
@@ -180,15 +180,15 @@ void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, ui
     *light_known = cached && glint_key_equal(cached->light, l->key);
     *occlude_known = cached && l->shadows && glint_key_equal(cached->occlude, l->key);
     glint_tile_use_own_light(tile, slot);
-    if (*light_known ||
-        (cached && reuse->keep_light[light] && (k ? cached->cosine != NULL : glint_reuse_hold_light(reuse, cached)))) {
+    if (*light_known || (cached && reuse->caches_light[light] &&
+                         (k ? cached->cosine != NULL : glint_reuse_hold_light(reuse, cached)))) {
         tile->at.light[slot].cosine = cached->cosine + first;
         tile->at.light[slot].attenuation = cached->attenuation + first;
         tile->at.light[slot].log2_specular = cached->log2_specular + first;
         tile->at.light[slot].lit = cached->lit + first / GLINT_GROUP;
         tile->at.light[slot].brightest = cached->cached_brightest;
     }
-    if (*occlude_known || (cached && l->shadows && reuse->keep_light[light] &&
+    if (*occlude_known || (cached && l->shadows && reuse->caches_light[light] &&
                            (k ? has_occlude(cached, l) : glint_reuse_hold_occlude(reuse, cached, l->cap)))) {
         tile->at.light[slot].open = cached->open + first / GLINT_GROUP;
         if (l->cap)
@@ -204,14 +204,14 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
     glint_cached_tile *cached = tile->cached;
     if (!cached)
         return;
-    if (reuse->keep_cast && cached->t && !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
+    if (reuse->caches_cast && cached->t && !glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         cached->cast = plan->keys[GLINT_STAGE_CAST];
     for (uint32_t i = 0; i < reuse->light_count; i++) {
-        if (reuse->keep_light[i] && cached->lights[i].cosine) {
+        if (reuse->caches_light[i] && cached->lights[i].cosine) {
             cached->lights[i].light = plan->lights[i].key;
             cached->lights[i].cached_brightest = cached->lights[i].brightest;
         }
-        if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
+        if (reuse->caches_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
             cached->lights[i].occlude = plan->lights[i].key;
     }
     glint_tile_step(tile, frame, GLINT_AT_SIGN, NULL);
@@ -280,7 +280,7 @@ void glint_tile_note_nothing(const glint_tile *tile, uint32_t k)
     tile->cached->background = true;
 }
 
-void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box)
+void glint_tile_cache_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box)
 {
     glint_cached_tile *cached = tile->cached;
     const glint_key surface = frame->plan->keys[GLINT_STAGE_SURFACE];

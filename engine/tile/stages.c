@@ -143,7 +143,7 @@ static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
 static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
 {
     if (filled)
-        glint_tile_keep_box(tile, frame, filled);
+        glint_tile_cache_box(tile, frame, filled);
     tile->at.box = filled ? filled : &tile->cached->box;
     if (!tile->at.only && tile->at.box->only != GLINT_MISS)
         tile->at.only = &tile->at.box->only;

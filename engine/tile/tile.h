@@ -167,7 +167,7 @@ typedef struct glint_tile {
     glint_cast_view view; ///< of the frame's cameras
     uint32_t sample; ///< number of the current sample
     uint32_t boxed; ///< samples so far whose points are in the cached box
-    uint32_t painted, kept; ///< samples so far with programs run; samples with cached results of first parts
+    uint32_t painted, cached_samples; ///< samples so far with programs run; samples with cached results of first parts
     glint_tile_sample at;
     size_t index; ///< index of the tile in the picture
     glint_cached_tile *cached; ///< NULL: nothing is cached for this tile
@@ -284,7 +284,7 @@ void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *fr
 void glint_tile_note_nothing(const glint_tile *tile, uint32_t k);
 void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k);
 /// Adds the points of the current sample to the cached box; NULL: it has none.
-void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
+void glint_tile_cache_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
 /// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's
 /// memory has them already.
 bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame);
@@ -590,7 +590,7 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
                               const uint16_t *reached);
 /// effects/derivative/vertex.c: stores the slopes of a block of faces and vertices; interpolates them for samples of
 /// their triangles, after their light.
-void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
+void glint_derive_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_derive_vertex(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted);
 /// effects/derivative/fade.c: after a sample of the eye's hits, if light fades.
 void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame);

@@ -34,7 +34,7 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, glint
         glint_tile_find_painted(tile, frame); // bumps make their own lists
     } else if (!w->lit && !w->points)
         need_painted(tile, frame, w);
-    glint_tile_keep_pattern(tile, frame, w->sample);
+    glint_tile_cache_pattern(tile, frame, w->sample);
 }
 
 /// Returns whether this walk stores the picture's geometry: the walk through the pixels' centres, or sample 0 if it
@@ -85,7 +85,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, glint_sam
     glint_tile_step(tile, frame, GLINT_AT_HITS, w);
     const bool any = w->any = glint_has_lanes(tile->at.hits, tile->group_count);
     if (!any)
-        glint_tile_keep_box(tile, frame, NULL);
+        glint_tile_cache_box(tile, frame, NULL);
     if (tile->cached && !glint_key_equal(tile->cached->seen, plan->keys[GLINT_STAGE_SURFACE])) {
         if (any)
             glint_tile_note_surfaces(tile, frame, w->sample);
@@ -197,7 +197,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_sample_walk w = { .sample = k };
     if (k == 0)
-        tile->boxed = tile->painted = tile->kept = 0;
+        tile->boxed = tile->painted = tile->cached_samples = 0;
     tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
     tile->own_planes = frame->plan->together ? k : 0;

@@ -131,7 +131,7 @@ glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_p
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
     glint_refine *refine = renderer->refine;
-    glint_image *kept = NULL, in_place;
+    glint_image *base_image = NULL, in_place;
     glint_frame_stats first;
     const bool alone =
         !renderer->reuse.on || !renderer->base || !glint_key_equal(renderer->setting, plan->setting_key);
@@ -143,10 +143,11 @@ glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_p
                        !(plan->desc.passes & GLINT_LIGHT_PASSES) && !plan->light_groups;
     glint_status status = open_base(renderer, error);
     if (!status)
-        status = refine->in_place ? render_in_place(renderer, plan, image, table, &in_place, &kept, &first, error)
-                                  : render_base(renderer, plan, &kept, &first, error);
+        status = refine->in_place ? render_in_place(renderer, plan, image, table, &in_place, &base_image, &first, error)
+                                  : render_base(renderer, plan, &base_image, &first, error);
     if (!status)
-        status = refine_base(renderer, plan, image, refine->in_place ? &in_place : kept, table, &first, stats, error);
-    glint_image_release(kept);
+        status =
+            refine_base(renderer, plan, image, refine->in_place ? &in_place : base_image, table, &first, stats, error);
+    glint_image_release(base_image);
     return status;
 }

@@ -280,16 +280,16 @@ static bool moves(const glint_plan_derivatives *all, uint32_t source)
 }
 
 /// Records the lanes above the horizon of a light that it does not reach.
-static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32_t g, unsigned lit, unsigned open)
+static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32_t g, unsigned lit, unsigned unoccluded)
 {
     glint_derivative_work *work = glint_derivative_of(tile);
     uint32_t *shadows = work->shadows + (size_t)g * GLINT_GROUP;
-    const unsigned kept = lit & ~open, fresh = kept & ~(light->joined ? work->kept[g] : 0u);
+    const unsigned occluded = lit & ~unoccluded, fresh = occluded & ~(light->joined ? work->occluded[g] : 0u);
     if (!light->joined)
-        work->kept[g] = work->given[g] = 0;
-    work->kept[g] |= (uint16_t)kept;
-    work->given[g] |= (uint16_t)open;
-    work->mixed[g] |= work->kept[g] & work->given[g];
+        work->occluded[g] = work->unoccluded[g] = 0;
+    work->occluded[g] |= (uint16_t)occluded;
+    work->unoccluded[g] |= (uint16_t)unoccluded;
+    work->mixed[g] |= work->occluded[g] & work->unoccluded[g];
     for (unsigned rest = fresh; rest; rest &= rest - 1) {
         uint32_t *hash = &shadows[__builtin_ctz(rest)];
         *hash = (*hash ^ (light->source + 1)) * GLINT_SHADOW_MIXER;

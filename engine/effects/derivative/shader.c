@@ -95,7 +95,7 @@ static void find_arrival(const shading *s, size_t index, uint32_t e, const glint
 }
 
 /// Clears all other lanes.
-static void keep_lanes(unsigned lanes, double slope[GLINT_GROUP])
+static void mask_lanes(unsigned lanes, double slope[GLINT_GROUP])
 {
     for (unsigned bits = 0xffff & ~lanes; bits; bits &= bits - 1)
         slope[__builtin_ctz(bits)] = 0;
@@ -138,7 +138,7 @@ static void find_entry(const shading *s, size_t index, uint32_t e, bool arrives)
         const unsigned wanted = s->slopes->wanted[e];
         const unsigned bent = wanted ? glint_bend_points(s->tile, s->frame, index, g, wanted, &points, row) : 0;
         for (int i = 0; i < 9 && wanted & ~bent; i++)
-            keep_lanes(bent, row[i]);
+            mask_lanes(bent, row[i]);
         if (reads_own_space(s))
             turn_points(s, index, e);
     }
@@ -265,7 +265,7 @@ static void add_sums(const shading *s, size_t index)
             for (int i = 0; i < GLINT_GROUP; i++)
                 slope[i] = fabs(from[i] * (double)share[i]) < HUGE_VAL ? from[i] * (double)share[i] : 0;
             if (s->slopes->wanted[e] != 0xffff)
-                keep_lanes(s->slopes->wanted[e], slope);
+                mask_lanes(s->slopes->wanted[e], slope);
             for (int i = 0; i < GLINT_GROUP; i++)
                 sum[i] += slope[i];
         }

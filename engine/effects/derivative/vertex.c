@@ -5,18 +5,18 @@
 #include "engine/effects/derivative/work.h"
 
 /// Returns the cached values of a face or vertex: its light, then its slopes for each derivative.
-static double *kept_of(const glint_tile_frame *frame, uint32_t side, uint32_t number)
+static double *stored_slopes(const glint_tile_frame *frame, uint32_t side, uint32_t number)
 {
     const glint_shading_points_cached *all = frame->shading_points;
     return all->slopes + ((size_t)side * all->blocks * GLINT_SHADING_POINT_BLOCK + number) * 3 * (all->slope_count + 1);
 }
 
-void glint_derive_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+void glint_derive_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     const glint_derivative_work *work = glint_derivative_of(tile);
     const bool weighs = glint_derivatives_read_light(tile, frame->plan);
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++) {
-        double *to = kept_of(frame, 0, block * GLINT_SHADING_POINT_BLOCK + i); // the backs' blocks follow
+        double *to = stored_slopes(frame, 0, block * GLINT_SHADING_POINT_BLOCK + i); // the backs' blocks follow
         for (int c = 0; c < 3; c++) {
             to[c] = weighs ? work->light[c][i] : 0;
             for (size_t k = 0; k < frame->plan->derivatives->count; k++)
@@ -59,7 +59,7 @@ static void derive_sample(const glint_tile *tile, const glint_tile_frame *frame,
     const bool flat = number[0] == number[1] && number[0] == number[2];
     double *at[3], share[3];
     for (int j = 0; j < 3; j++)
-        at[j] = kept_of(frame, glint_has_lane(tile->hit.back, i), number[j]);
+        at[j] = stored_slopes(frame, glint_has_lane(tile->hit.back, i), number[j]);
     find_share(frame, prim, &points, i, share);
     if (flat)
         vec_copy(share, whole);

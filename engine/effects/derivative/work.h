@@ -34,7 +34,8 @@ typedef struct glint_derivative_work {
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< hashes of the lights hidden from each pixel, in the first sample and in
         ///< this one
     uint32_t first[GLINT_TILE_SAMPLES];
-    uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that some samples of the current light do not
+    uint16_t occluded[GLINT_TILE_GROUPS],
+        unoccluded[GLINT_TILE_GROUPS]; ///< lanes that some samples of the current light do not
         ///< reach, and do reach
     uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches partly
 } glint_derivative_work;

@@ -223,16 +223,16 @@ void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
 // ---- Light computed once per face or vertex ----
 
 /// Returns the cached light of `group` for the faces and vertices of both sides. The picture's own light comes first.
-static glint_shading_point_light *kept_light(const glint_tile_frame *frame, uint32_t group)
+static glint_shading_point_light *stored_light(const glint_tile_frame *frame, uint32_t group)
 {
     const size_t each = 2 * (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
     return frame->shading_points->light + (group + 1) * each;
 }
 
-void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     for (uint32_t g = 0; frame->plan->light_groups && g < frame->plan->light_groups->count; g++) {
-        glint_shading_point_light *light = kept_light(frame, g) + (size_t)block * GLINT_SHADING_POINT_BLOCK;
+        glint_shading_point_light *light = stored_light(frame, g) + (size_t)block * GLINT_SHADING_POINT_BLOCK;
         for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++)
             for (int term = 0; term < 2; term++)
                 for (int c = 0; c < 3; c++)
@@ -243,7 +243,7 @@ void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *fra
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args)
 {
     for (uint32_t g = 0; frame->plan->light_groups && g < frame->plan->light_groups->count; g++) {
-        args->light[0] = kept_light(frame, g);
+        args->light[0] = stored_light(frame, g);
         args->light[1] = args->light[0] + (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
         for (int term = 0; term < 2; term++)
             for (int c = 0; c < 3; c++)

@@ -41,7 +41,7 @@ void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
 
 /// Caches the light of a block of faces or vertices, and adds it to the samples that show them; see
 /// effects/vertex_shading/.
-void glint_groups_keep_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
+void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
 
 /// Averages all samples, copies the base's means for the pixels that are not refined, and stores them.

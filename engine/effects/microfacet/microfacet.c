@@ -12,7 +12,7 @@ static bool view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_
     glint_cached_tile *cached = tile->cached;
     const bool known = cached && glint_key_equal(cached->view, frame->plan->keys[GLINT_STAGE_VIEW]);
     tile->at.facing = own_of(tile)->facing;
-    if (known || (cached && frame->reuse->keep_view &&
+    if (known || (cached && frame->reuse->caches_view &&
                   (k ? cached->facing != NULL : glint_reuse_hold_view(frame->reuse, cached))))
         tile->at.facing = cached->facing + (size_t)k * GLINT_TILE_SAMPLES;
     return known;
@@ -27,7 +27,7 @@ static bool facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32
     tile->at.light[slot].sine2 = own_of(tile)->sine2[slot];
     tile->at.light[slot].schlick = own_of(tile)->schlick[slot];
     if (known ||
-        (cached && reuse->keep_light[light] && (k ? cached->sine2 != NULL : glint_reuse_hold_facet(reuse, cached)))) {
+        (cached && reuse->caches_light[light] && (k ? cached->sine2 != NULL : glint_reuse_hold_facet(reuse, cached)))) {
         tile->at.light[slot].sine2 = cached->sine2 + first;
         tile->at.light[slot].schlick = cached->schlick + first;
     }
@@ -49,10 +49,10 @@ static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     const glint_plan *plan = frame->plan;
     const glint_reuse *reuse = frame->reuse;
     glint_cached_tile *cached = tile->cached;
-    if (reuse->keep_view && cached->facing)
+    if (reuse->caches_view && cached->facing)
         cached->view = plan->keys[GLINT_STAGE_VIEW];
     for (uint32_t i = 0; i < reuse->light_count; i++)
-        if (reuse->keep_light[i] && cached->lights[i].sine2)
+        if (reuse->caches_light[i] && cached->lights[i].sine2)
             cached->lights[i].facet = plan->lights[i].key;
 }
 

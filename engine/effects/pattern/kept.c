@@ -6,15 +6,15 @@
 #include <string.h>
 
 /// The cached results of a sample, in a tile whose key matches.
-typedef struct kept_sample {
+typedef struct cached_sample {
     double *numbers;
     float *planes;
     uint16_t *truths;
-} kept_sample;
+} cached_sample;
 
-static kept_sample sample_at(const glint_cached_tile *cached, const glint_splits *splits, uint32_t k)
+static cached_sample sample_at(const glint_cached_tile *cached, const glint_splits *splits, uint32_t k)
 {
-    kept_sample at = { .numbers = (double *)(void *)((char *)cached->values + k * glint_splits_bytes(splits)) };
+    cached_sample at = { .numbers = (double *)(void *)((char *)cached->values + k * glint_splits_bytes(splits)) };
     at.planes = (float *)(at.numbers + (size_t)splits->numbers * GLINT_TILE_SAMPLES);
     at.truths = (uint16_t *)(at.planes + (size_t)splits->planes * GLINT_TILE_SAMPLES);
     return at;
@@ -34,10 +34,10 @@ static bool are_split(const struct glint_pattern *pattern, const glint_splits *s
 }
 
 /// Returns whether this frame caches results of the tile. Planes cached for other reasons are stored elsewhere.
-static bool may_keep(const glint_tile *tile, const glint_tile_frame *frame)
+static bool may_cache(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_splits *splits = &frame->reuse->splits;
-    return tile->cached && glint_splits_are_on(splits) && !(splits->planes && frame->reuse->keep_pattern) &&
+    return tile->cached && glint_splits_are_on(splits) && !(splits->planes && frame->reuse->caches_pattern) &&
            are_split(tile->pattern, splits);
 }
 
@@ -72,8 +72,8 @@ static bool pack(const double from[GLINT_GROUP], unsigned lanes, uint16_t *bits)
 // ---- The first part -----------------------------------------------------------------------------------------------
 
 /// Caches one of a batch's values. Returns false if that is impossible.
-static bool keep_value(const glint_pattern_batch *batch, const double *value, bool truth, uint32_t value_slot,
-                       const kept_sample *to)
+static bool cache_value(const glint_pattern_batch *batch, const double *value, bool truth, uint32_t value_slot,
+                        const cached_sample *to)
 {
     for (uint32_t k = 0; k < batch->count; k++, value += GLINT_GROUP) {
         const uint32_t group = batch->entries[k].group;
@@ -95,8 +95,8 @@ static glint_program_code part_of(const glint_program_code *part, const glint_pr
 }
 
 /// Runs a program's first part on gathered inputs, and caches its results. Returns false if that is impossible.
-static bool keep_first(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_batch *batch,
-                       const glint_split_field *of, const glint_program *program, const kept_sample *to)
+static bool cache_first(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_batch *batch,
+                        const glint_split_field *of, const glint_program *program, const cached_sample *to)
 {
     const glint_program_code code = part_of(&of->split->first, program);
     glint_program_args args = { .group_count = batch->count, .wanted = batch->called.wanted };
@@ -105,7 +105,7 @@ static bool keep_first(struct glint_pattern *pattern, const glint_tile_frame *fr
         args.result[k] = pattern->values[k];
     glint_pattern_call(pattern, frame, &code, 0, &args);
     for (uint32_t k = 0; k < code.output_count && good; k++)
-        good = keep_value(batch, pattern->values[k], of->split->truths >> k & 1, of->slot[k], to);
+        good = cache_value(batch, pattern->values[k], of->split->truths >> k & 1, of->slot[k], to);
     return good;
 }
 
@@ -121,7 +121,7 @@ static bool are_in_order(const glint_pattern_batch *batch)
 
 /// Sets an input of the second part to a cached value.
 static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch, uint32_t k, bool truth,
-                       uint32_t value_slot, const kept_sample *from)
+                       uint32_t value_slot, const cached_sample *from)
 {
     const uint32_t *groups = batch->called.groups;
     const double *numbers = from->numbers + (size_t)value_slot * GLINT_TILE_SAMPLES;
@@ -138,7 +138,7 @@ static void read_value(struct glint_pattern *pattern, glint_pattern_batch *batch
 
 /// Computes a second part that only selects by cached booleans, without rows. Returns false if it does more.
 static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_batch *batch, const glint_split_field *of,
-                           const glint_program_code *code, const kept_sample *from)
+                           const glint_program_code *code, const cached_sample *from)
 {
     glint_choose_args calls[GLINT_PROGRAM_OUTPUTS_MAX];
     for (uint32_t k = 0; k < code->output_count; k++) {
@@ -160,7 +160,7 @@ static bool choose_outputs(const glint_tile_frame *frame, const glint_pattern_ba
 
 /// Runs the second part of a field's program. Returns false if it gave an invalid reflectance.
 static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pattern_batch *batch,
-                      const glint_split_field *of, const glint_program_code *code, const kept_sample *from)
+                      const glint_split_field *of, const glint_program_code *code, const cached_sample *from)
 {
     for (uint32_t k = 0; k < of->split->first.output_count; k++)
         read_value(tile->pattern, batch, k, of->split->truths >> k & 1, of->slot[k], from);
@@ -174,7 +174,7 @@ static bool run_field(glint_tile *tile, const glint_tile_frame *frame, glint_pat
 /// Runs the second parts of a batch's programs and computes the derived planes. Returns false if one gave an invalid
 /// reflectance, which has to be reported with its point.
 static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
-                       glint_pattern_batch *batch, const kept_sample *from)
+                       glint_pattern_batch *batch, const cached_sample *from)
 {
     const glint_split_material *split = &frame->reuse->splits.of[batch->entries[0].material];
     for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
@@ -196,8 +196,8 @@ static bool run_second(glint_tile *tile, const glint_tile_frame *frame, const gl
 // ---- A sample -----------------------------------------------------------------------------------------------------
 
 /// Runs both parts, and the programs that need no split, whose planes are cached.
-static bool keep_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
-                       glint_pattern_batch *batch, const kept_sample *to)
+static bool cache_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+                        glint_pattern_batch *batch, const cached_sample *to)
 {
     const glint_split_material *split = &frame->reuse->splits.of[batch->entries[0].material];
     const uint64_t odd = glint_odd_patterns_count(&tile->counts.odd);
@@ -208,12 +208,12 @@ static bool keep_batch(glint_tile *tile, const glint_tile_frame *frame, const gl
     bool good = glint_odd_patterns_count(&tile->counts.odd) == odd; // later frames must report it, too
     for (int field = 0; field < GLINT_FIELD_PLANES && good; field++)
         if (split->of[field].split)
-            good = keep_first(tile->pattern, frame, batch, &split->of[field], batch->own->program[field], to);
+            good = cache_first(tile->pattern, frame, batch, &split->of[field], batch->own->program[field], to);
     return good && run_second(tile, frame, points, batch, to);
 }
 
 /// Runs all listed programs, and adds to the counts. known: the values of the first parts are cached.
-static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const kept_sample *at, bool known)
+static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const cached_sample *at, bool known)
 {
     const glint_odd_patterns odd = tile->counts.odd;
     const uint64_t patterns = tile->counts.work.patterns;
@@ -223,7 +223,7 @@ static bool run_split(glint_tile *tile, const glint_tile_frame *frame, const kep
     while (good && glint_pattern_next(tile->pattern, frame, &batch)) {
         for (uint32_t k = 0; k < batch.count; k++)
             tile->counts.work.patterns += glint_count_lanes(batch.entries[k].lanes);
-        good = known ? run_second(tile, frame, &points, &batch, at) : keep_batch(tile, frame, &points, &batch, at);
+        good = known ? run_second(tile, frame, &points, &batch, at) : cache_batch(tile, frame, &points, &batch, at);
     }
     if (good) {
         glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
@@ -239,26 +239,26 @@ bool glint_tile_recall_pattern(glint_tile *tile, const glint_tile_frame *frame, 
 {
     const glint_splits *splits = &frame->reuse->splits;
     tile->painted++;
-    if (!may_keep(tile, frame) || !glint_key_equal(tile->cached->split, splits->key))
+    if (!may_cache(tile, frame) || !glint_key_equal(tile->cached->split, splits->key))
         return false;
-    const kept_sample at = sample_at(tile->cached, splits, k);
+    const cached_sample at = sample_at(tile->cached, splits, k);
     if (splits->planes)
         tile->at.planes = at.planes;
     return run_split(tile, frame, &at, true);
 }
 
-void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+void glint_tile_cache_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     const glint_splits *splits = &frame->reuse->splits;
-    const bool keeps = may_keep(tile, frame) && !glint_key_equal(tile->cached->split, splits->key) &&
-                       glint_reuse_hold_values(frame->reuse, tile->cached);
-    if (keeps) {
-        const kept_sample at = sample_at(tile->cached, splits, k);
+    const bool caches = may_cache(tile, frame) && !glint_key_equal(tile->cached->split, splits->key) &&
+                        glint_reuse_hold_values(frame->reuse, tile->cached);
+    if (caches) {
+        const cached_sample at = sample_at(tile->cached, splits, k);
         tile->cached->split = (glint_key) { 0 };
         if (splits->planes)
             tile->at.planes = at.planes;
         if (run_split(tile, frame, &at, false)) {
-            tile->kept++;
+            tile->cached_samples++;
             return;
         }
     }
@@ -268,9 +268,9 @@ void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, ui
 static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
-    if (frame->reuse->keep_pattern && tile->cached->planes)
+    if (frame->reuse->caches_pattern && tile->cached->planes)
         tile->cached->pattern = frame->plan->keys[GLINT_STAGE_PATTERN];
-    if (tile->kept > 0 && tile->kept == tile->painted)
+    if (tile->cached_samples > 0 && tile->cached_samples == tile->painted)
         tile->cached->split = frame->reuse->splits.key;
 }
 

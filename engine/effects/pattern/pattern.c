@@ -481,7 +481,7 @@ bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, 
 {
     glint_cached_tile *cached = tile->cached;
     const bool known = cached && glint_key_equal(cached->pattern, frame->plan->keys[GLINT_STAGE_PATTERN]);
-    if (known || (cached && frame->reuse->keep_pattern &&
+    if (known || (cached && frame->reuse->caches_pattern &&
                   (k ? cached->planes != NULL : glint_reuse_hold_planes(frame->reuse, cached))))
         tile->at.planes = cached->planes + (size_t)k * frame->plan->patterns->plane_count * GLINT_TILE_SAMPLES;
     return known;

@@ -54,7 +54,7 @@ bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, 
 /// its point; the list is then unchanged.
 bool glint_tile_recall_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// Like glint_tile_pattern, and caches the results of first parts for later frames.
-void glint_tile_keep_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+void glint_tile_cache_pattern(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 
 /// Runs the programs of the lanes listed by glint_tile_find_painted into the tile's planes, and counts the stage. The
 /// points must be known, and the normals if programs read them.

@@ -252,7 +252,7 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
         tile->active[g] = tile->hit.mask[g];
 }
 
-static void keep_block(const struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
+static void store_block(const struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
     const glint_tile *tile = &vertex->batch.tile;
     glint_shading_point_light *light = frame->shading_points->light + (size_t)block * GLINT_SHADING_POINT_BLOCK;
@@ -276,10 +276,10 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
         glint_tile_bump(tile, frame);
     glint_batch_shine(&vertex->batch, frame, true);
     glint_batch_end(&vertex->batch, to);
-    keep_block(vertex, frame, block);
-    glint_groups_keep_block(tile, frame, block);
+    store_block(vertex, frame, block);
+    glint_groups_store_block(tile, frame, block);
     if (frame->plan->derivatives)
-        glint_derive_keep_block(tile, frame, block);
+        glint_derive_store_block(tile, frame, block);
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
         to->counts.work.sites += (uint64_t)__builtin_popcount(tile->hit.mask[g]);
     to->counts.runs[GLINT_STAGE_VERTEX]++;

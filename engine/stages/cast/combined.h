@@ -376,20 +376,20 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
 }
 
 /// Stores hits of part j; for a mesh, hits of its triangles.
-static void R(keep_part)(const glint_cast_args *args, const glint_combined *whole, const R(stretches) * s, uint32_t j,
-                         size_t at, rm mine, vr t)
+static void R(update_part)(const glint_cast_args *args, const glint_combined *whole, const R(stretches) * s, uint32_t j,
+                           size_t at, rm mine, vr t)
 {
     if (!rm_bits(mine))
         return;
     const uint32_t index = args->geometry->prim_count + whole->first + j;
     if (args->geometry->prims[index].kind != GLINT_PRIM_HULL) {
-        R(keep_nearest)(args, at, index, mine, t);
+        R(update_nearest)(args, at, index, mine, t);
         return;
     }
     const unsigned in = rm_bits(r_eq(t, s->t[0][j]));
     for (unsigned bits = rm_bits(mine); bits; bits &= bits - 1) {
         const int i = __builtin_ctz(bits);
-        R(keep_nearest)(args, at, s->triangle[in >> i & 1 ? 0 : 1][j][i], rm_from_bits(bits & -bits), t);
+        R(update_nearest)(args, at, s->triangle[in >> i & 1 ? 0 : 1][j][i], rm_from_bits(bits & -bits), t);
     }
 }
 
@@ -406,19 +406,19 @@ static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *ar
         if (!hit)
             continue;
         if (s.length == 1) {
-            R(keep_part)(args, whole, &s, s.program[0], at, rm_from_bits(hit), t);
+            R(update_part)(args, whole, &s, s.program[0], at, rm_from_bits(hit), t);
             continue;
         }
         if (s.length == 3) {
             const rm second = R(is_of_second)(&s, t), kept = rm_from_bits(hit);
-            R(keep_part)(args, whole, &s, s.program[0], at, rm_andnot(kept, second), t);
-            R(keep_part)(args, whole, &s, s.program[1], at, rm_and(kept, second), t);
+            R(update_part)(args, whole, &s, s.program[0], at, rm_andnot(kept, second), t);
+            R(update_part)(args, whole, &s, s.program[1], at, rm_and(kept, second), t);
             continue;
         }
         const vr part = R(change_at)(&s, t, true).part;
         for (uint64_t live = s.live; live; live &= live - 1) {
             const uint32_t j = (uint32_t)__builtin_ctzll(live);
-            R(keep_part)(args, whole, &s, j, at, rm_and(rm_from_bits(hit), r_eq(part, r_set(j))), t);
+            R(update_part)(args, whole, &s, j, at, rm_and(rm_from_bits(hit), r_eq(part, r_set(j))), t);
         }
     }
     return any != 0;

@@ -13,14 +13,15 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define HULL_KEPT 16 ///< crossings of a ray that are stored at a time
+#define HULL_CROSSINGS_MAX 16 ///< crossings of a ray that are stored at a time
 
 /// The crossings of one ray with triangles, ahead of its origin, nearest first.
 typedef struct R(crossings) {
     int count, sum; ///< sum: number of exits minus entries over all crossings
-    real t[HULL_KEPT];
-    int winding[HULL_KEPT]; ///< exits minus entries at that t
-    uint32_t triangle[HULL_KEPT][2]; ///< the first triangle there through which the ray enters, leaves; GLINT_MISS:
+    real t[HULL_CROSSINGS_MAX];
+    int winding[HULL_CROSSINGS_MAX]; ///< exits minus entries at that t
+    uint32_t triangle[HULL_CROSSINGS_MAX]
+                     [2]; ///< the first triangle there through which the ray enters, leaves; GLINT_MISS:
         ///< none
     uint32_t begun[2]; ///< likewise, for triangles that the ray starts on
     real lost; ///< the nearest crossing that could not be stored; inf: none
@@ -79,7 +80,7 @@ static inline void R(note_triangle)(uint32_t found[2], int winding, uint32_t ind
         found[winding > 0] = index;
 }
 
-static void R(keep_crossing)(R(crossings) * of, real t, int winding, uint32_t index)
+static void R(store_crossing)(R(crossings) * of, real t, int winding, uint32_t index)
 {
     int at = 0;
     if (!(t < of->lost))
@@ -87,9 +88,9 @@ static void R(keep_crossing)(R(crossings) * of, real t, int winding, uint32_t in
     while (at < of->count && of->t[at] < t)
         at++;
     if (at == of->count || of->t[at] != t) {
-        if (of->count == HULL_KEPT)
-            of->lost = at == HULL_KEPT ? t : of->t[--of->count];
-        if (at == HULL_KEPT)
+        if (of->count == HULL_CROSSINGS_MAX)
+            of->lost = at == HULL_CROSSINGS_MAX ? t : of->t[--of->count];
+        if (at == HULL_CROSSINGS_MAX)
             return;
         for (int i = of->count++; i > at; i--) {
             of->t[i] = of->t[i - 1];
@@ -132,7 +133,7 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
             R(note_triangle)(rays->of[i].begun, orientation, index);
         } else if (rays->from[i] < t[i]) {
             rays->of[i].sum += orientation;
-            R(keep_crossing)(&rays->of[i], t[i], orientation, index);
+            R(store_crossing)(&rays->of[i], t[i], orientation, index);
         }
     }
 }
@@ -225,7 +226,7 @@ static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
     if (inside == (of->sum > 0))
         return of->sum;
     const uint32_t begun = of->begun[winding > 0];
-    R(keep_crossing)(of, (real)GLINT_LEAST_T, winding, begun == GLINT_MISS ? on : begun);
+    R(store_crossing)(of, (real)GLINT_LEAST_T, winding, begun == GLINT_MISS ? on : begun);
     return inside;
 }
 

@@ -168,7 +168,7 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
 
 /// Stores hits that are nearer than all previous ones. near: for hits beyond it, no ray starts in the triangle's
 /// plane.
-INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
+INNER void R(update_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;
     const glint_prim *prims = args->geometry->prims;
@@ -224,7 +224,7 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool own
         if (leaf->faced)
             hits = R(decide_faced)(tile, leaf, own, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
         for (; hits; hits &= hits - 1)
-            R(keep_pair)(tile, leaf, own, i + __builtin_ctz(hits), near, &moved);
+            R(update_pair)(tile, leaf, own, i + __builtin_ctz(hits), near, &moved);
     }
     for (; moved; moved &= moved - 1) {
         const int g = __builtin_ctzll(moved);

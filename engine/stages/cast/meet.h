@@ -205,7 +205,7 @@ static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t
 }
 
 /// Stores `t` in the lanes of `hit` where it is nearer than the current hit.
-INNER void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
+INNER void R(update_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
 {
     real *best_t = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;

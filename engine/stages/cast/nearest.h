@@ -35,7 +35,7 @@ static inline float R(reach_in_index)(const glint_cast_args *args, real t)
 }
 
 /// Stores the hit of one ray if it is the nearest so far.
-static inline void R(keep_ray)(const glint_cast_args *args, uint32_t ray, uint32_t id, real t)
+static inline void R(update_ray)(const glint_cast_args *args, uint32_t ray, uint32_t id, real t)
 {
     const glint_prim *prims = args->geometry->prims;
     real *best = (real *)args->t + ray;
@@ -72,7 +72,7 @@ static __attribute__((noinline)) void R(decide_ray_pairs)(const glint_cast_args 
         for (int j = i; j < i + VR && j < pairs->count; j++) {
             const uint32_t ray = pairs->ray[j];
             if (hits >> (j - i) & 1)
-                R(keep_ray)(args, ray, pairs->prim[j], t[j - i]);
+                R(update_ray)(args, ray, pairs->prim[j], t[j - i]);
             if (pairs->next[j] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
                 pairs->undecided[ray / GLINT_GROUP] |= (uint16_t)(1u << ray % GLINT_GROUP);
         }

@@ -28,7 +28,7 @@ INNER void R(decide_ball)(const glint_cast_args *args, const R(candidate) * ball
             continue;
         const rm hit = R(intersect_ball)(f, d, a, r_set(ball->c), r_set(ball->r2), r_set(ball->scale), &t);
         if (rm_bits(hit))
-            R(keep_nearest)(args, at + (size_t)i, ball->id, hit, t);
+            R(update_nearest)(args, at + (size_t)i, ball->id, hit, t);
     }
 }
 

@@ -150,7 +150,7 @@ static inline bool R(decide_raster)(const R(raster_tile) * tile, const R(raster_
         hit = R(unless_begun_on)(table, triangle->prim, NULL, from, hit, t);
         if (!rm_bits(hit))
             continue;
-        R(keep_nearest)(args, at + (size_t)i, triangle->id, hit, t);
+        R(update_nearest)(args, at + (size_t)i, triangle->id, hit, t);
         any = true;
     }
     return any;

@@ -88,7 +88,7 @@ static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
             const glint_prim *prim = &table->prims[id];
             const rm hit = torus ? R(reentry_t)(&table->solids[prim->item], prim, o, d, args->inward[g] >> i, &t)
                                  : R(exit_t)(table, prim, o, d, &t);
-            R(keep_nearest)(args, at + (size_t)i, id, rm_and(rm_from_bits(own), hit), t);
+            R(update_nearest)(args, at + (size_t)i, id, rm_and(rm_from_bits(own), hit), t);
         }
     }
 }
@@ -140,7 +140,7 @@ static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint3
         hit = rm_andnot(hit, rm_from_bits(own)); // see cast_on_own
         if (!rm_bits(hit))
             continue;
-        R(keep_nearest)(args, at + i, id, hit, t);
+        R(update_nearest)(args, at + i, id, hit, t);
         any = true;
     }
     return any;

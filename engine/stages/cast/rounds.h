@@ -176,7 +176,7 @@ static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args 
             if (lanes.off >> j & 1 && !(0 < t))
                 continue;
             if (lanes.plain >> j & 1 && near < t)
-                R(keep_ray)(args, ray, id, t);
+                R(update_ray)(args, ray, id, t);
             else
                 R(decide_rays)(args, g, id, 1u << lane);
             R(look_no_further)(&rounds->first, (int)lane, R(reach_in_index)(args, ((const real *)args->t)[ray]));

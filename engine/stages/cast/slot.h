@@ -79,7 +79,7 @@ INNER void R(decide_ball_of_eye)(const glint_cast_args *args, uint32_t id, const
         for (int k = 0; k < 3; k++)
             d[k] = r_load(across + k * GLINT_GROUP) + r_load(down + k * GLINT_GROUP);
         const rm hit = R(intersect_ball)(f, d, DOT(d, d), c, r2, scale, &t);
-        R(keep_nearest)(args, parts[n].at, id, hit, t);
+        R(update_nearest)(args, parts[n].at, id, hit, t);
     }
 }
 
@@ -101,7 +101,7 @@ INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id,
             f[k] = (r_load((const real *)args->origin[k] + at) - center[k]) * ball.scale;
         const vr c = R(exact_power)(f, ball.r2, ball.r2_low);
         const rm hit = R(intersect_ball)(f, d, a, c, ball.r2, ball.scale, &t);
-        R(keep_nearest)(args, at, id, hit, t);
+        R(update_nearest)(args, at, id, hit, t);
     }
 }
 

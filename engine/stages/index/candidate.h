@@ -360,7 +360,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
         const rm hit = R(intersect_candidate)(args, candidate, f, d, &t);
         if (!rm_bits(hit))
             continue;
-        R(keep_nearest)(args, at + i, candidate->id, hit, t);
+        R(update_nearest)(args, at + i, candidate->id, hit, t);
         any = true;
     }
     return any;
