@@ -86,10 +86,10 @@ typedef struct glint_stage {
     glint_stage_step *step[GLINT_TIME_COUNT]; ///< NULL: nothing to do at that time
     /// After the stage light: removes lanes from those above the light's horizon. NULL: none.
     void (*limit)(struct glint_tile *tile, const struct glint_plan *plan, const struct glint_light_args *args);
-    /// After the stage occlude, which read `lit`: adds lanes to `open`. middle: for the whole light, at its centre.
-    /// NULL: none.
+    /// After the stage occlude, which read `lit`: adds lanes to `unoccluded`. middle: for the whole light, at
+    /// its centre. NULL: none.
     void (*admit)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_plan_light *light, bool middle,
-                  const uint16_t *lit, uint16_t *open);
+                  const uint16_t *lit, uint16_t *unoccluded);
     /// Computes the normal of a surface that the stage shows where ray i hits nothing. NULL: the stage shows no
     /// surface.
     void (*normal)(const struct glint_tile *tile, const struct glint_tile_frame *frame, uint32_t i, double normal[3]);

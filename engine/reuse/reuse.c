@@ -233,11 +233,11 @@ bool glint_reuse_hold_light(glint_reuse *reuse, glint_cached_light *light)
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, bool caps)
 {
     const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
-    if (!light->open)
-        light->open = hold(reuse, samples / 8);
-    if (light->open && caps && !light->visible)
+    if (!light->unoccluded)
+        light->unoccluded = hold(reuse, samples / 8);
+    if (light->unoccluded && caps && !light->visible)
         light->visible = hold(reuse, samples * sizeof *light->visible);
-    return light->open != NULL && (light->visible || !caps);
+    return light->unoccluded != NULL && (light->visible || !caps);
 }
 
 bool glint_reuse_hold_planes(glint_reuse *reuse, glint_cached_tile *tile)

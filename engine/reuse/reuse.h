@@ -28,7 +28,7 @@ typedef struct glint_cached_light {
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
     float cached_brightest; ///< the largest log2_specular there
-    uint16_t *open; ///< a separate block: lanes above the horizon that the light reaches
+    uint16_t *unoccluded; ///< a separate block: lanes above the horizon that the light reaches
     float *visible; ///< a separate block: visible share with caps, with the attenuation
     glint_key facet; ///< of the following arrays
     float *sine2, *schlick; ///< a separate block, sine2 first

@@ -154,7 +154,7 @@ bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint
 
 static bool has_occlude(const glint_cached_light *cached, const glint_plan_light *light)
 {
-    return cached->open && (cached->visible || !light->cap);
+    return cached->unoccluded && (cached->visible || !light->cap);
 }
 
 void glint_tile_use_own_light(glint_tile *tile, uint32_t slot)
@@ -164,7 +164,7 @@ void glint_tile_use_own_light(glint_tile *tile, uint32_t slot)
     tile->at.light[slot].attenuation = own->attenuation;
     tile->at.light[slot].log2_specular = own->log2_specular;
     tile->at.light[slot].lit = own->lit;
-    tile->at.light[slot].open = own->open;
+    tile->at.light[slot].unoccluded = own->unoccluded;
     tile->at.light[slot].visible = own->visible;
     tile->at.light[slot].brightest = GLINT_NO_SPECULAR;
     tile->at.light[slot].summed = false;
@@ -190,7 +190,7 @@ void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, ui
     }
     if (*occlude_known || (cached && l->shadows && reuse->caches_light[light] &&
                            (k ? has_occlude(cached, l) : glint_reuse_hold_occlude(reuse, cached, l->cap)))) {
-        tile->at.light[slot].open = cached->open + first / GLINT_GROUP;
+        tile->at.light[slot].unoccluded = cached->unoccluded + first / GLINT_GROUP;
         if (l->cap)
             tile->at.light[slot].visible = cached->visible + first;
     }
@@ -264,7 +264,7 @@ void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *fr
 void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
 {
     glint_cached_light *cached = &tile->cached->lights[index];
-    const uint16_t *lanes = shadows ? tile->at.light[slot].open : tile->at.light[slot].lit;
+    const uint16_t *lanes = shadows ? tile->at.light[slot].unoccluded : tile->at.light[slot].lit;
     const bool any = glint_has_lanes(lanes, tile->group_count);
     cached->reaches = (k && cached->reaches) || any;
     cached->brightest = fmaxf(k ? cached->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);

@@ -355,7 +355,7 @@ static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_
 {
     const glint_precision precision = frame->plan->desc.precision;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned bits = tile->at.light[slot].open[g]; bits; bits &= bits - 1) {
+        for (unsigned bits = tile->at.light[slot].unoccluded[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double to_light[3], most = HUGE_VAL;
             for (int c = 0; c < 3 && light->radiant_cap; c++)
@@ -387,32 +387,32 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
 
 /// Lets stages add lanes to those that a light reaches.
 static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
-                  uint16_t *open)
+                  uint16_t *unoccluded)
 {
     for (uint32_t bits = frame->plan->admits; bits; bits &= bits - 1)
-        glint_stage_table[__builtin_ctz(bits)]->admit(tile, frame, light, middle, lit, open);
+        glint_stage_table[__builtin_ctz(bits)]->admit(tile, frame, light, middle, lit, unoccluded);
 }
 
 /// Casts one ray to the middle of an area light for all samples of the call.
 static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                            const glint_occlude_args *samples)
 {
-    uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, open[GLINT_TILE_GROUPS];
+    uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, unoccluded[GLINT_TILE_GROUPS];
     glint_occlude_args args = *samples;
     args.sample_count = 1;
     args.light_sample[0] = NULL;
     args.lit[0] = lit;
-    args.open[0] = open;
+    args.unoccluded[0] = unoccluded;
     for (uint32_t s = 0; s < samples->sample_count; s++)
         for (uint32_t g = 0; g < args.group_count; g++)
             lit[g] |= samples->lit[s][g];
     for (uint32_t g = 0; g < args.group_count; g++)
         lit[g] = facing_lanes(tile, frame->plan, samples->position, g, lit[g]);
     frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
-    admit(tile, frame, light, true, lit, open);
+    admit(tile, frame, light, true, lit, unoccluded);
     for (uint32_t s = 0; s < samples->sample_count; s++)
         for (uint32_t g = 0; g < args.group_count; g++)
-            samples->open[s][g] = samples->lit[s][g] & open[g];
+            samples->unoccluded[s][g] = samples->lit[s][g] & unoccluded[g];
 }
 
 /// Returns the grid of a light; NULL: it has none.
@@ -439,7 +439,7 @@ static void aim_occlude(const glint_tile *tile, const glint_tile_frame *frame, u
     for (uint32_t i = 0; i < args->sample_count; i++) {
         args->light_sample[i] = glint_tile_light_sample_of(tile, &lights[slot[i]]);
         args->lit[i] = tile->at.light[slot[i]].lit;
-        args->open[i] = tile->at.light[slot[i]].open;
+        args->unoccluded[i] = tile->at.light[slot[i]].unoccluded;
     }
 }
 
@@ -484,7 +484,7 @@ static void occlude_light(glint_tile *tile, const glint_tile_frame *frame, uint3
     else
         frame->stages->geometry[plan->desc.precision].occlude(args);
     for (uint32_t i = 0; i < count && !light->hard; i++)
-        admit(tile, frame, &plan->lights[first + slot[i]], false, args->lit[i], args->open[i]);
+        admit(tile, frame, &plan->lights[first + slot[i]], false, args->lit[i], args->unoccluded[i]);
     if (light->cap)
         weaken(tile, frame, light, slot[0]);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, false);

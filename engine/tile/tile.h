@@ -90,7 +90,7 @@ typedef struct glint_tile_light {
     _Alignas(64) float attenuation[GLINT_TILE_SAMPLES];
     _Alignas(64) float log2_specular[GLINT_TILE_SAMPLES];
     _Alignas(64) float visible[GLINT_TILE_SAMPLES];
-    uint16_t lit[GLINT_TILE_GROUPS], open[GLINT_TILE_GROUPS];
+    uint16_t lit[GLINT_TILE_GROUPS], unoccluded[GLINT_TILE_GROUPS];
 } glint_tile_light;
 
 /// One sample's results of the stages view and facet.
@@ -110,11 +110,11 @@ typedef struct glint_tile_sample {
     struct {
         float *cosine, *attenuation, *log2_specular;
         float *sine2, *schlick; ///< only in frames with microfacets, like `facing`
-        uint16_t *lit, *open;
+        uint16_t *lit, *unoccluded;
         float *visible; ///< for lights with caps
         float brightest; ///< the largest log2_specular of the sample, or of all samples
         bool summed; ///< samples of an area light: only their sum is stored, in the cosine and log2_specular of the
-            ///< first one, and each has the `lit` and `open` of all
+            ///< first one, and each has the `lit` and `unoccluded` of all
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
     float *planes; ///< results of programs, see effects/pattern/plan.h; NULL in frames without programs

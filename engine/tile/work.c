@@ -18,7 +18,7 @@ void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, ui
     const glint_plan *plan = frame->plan;
     for (uint32_t i = 0; frame->count_work && plan->powers && i < count; i++) {
         const bool shadows = plan->lights[from + i].shadows;
-        const uint16_t *reached = shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        const uint16_t *reached = shadows ? tile->at.light[i].unoccluded : tile->at.light[i].lit;
         for (uint32_t at = 0; at < tile->group_count * GLINT_GROUP; at++)
             if (reached[at / GLINT_GROUP] >> at % GLINT_GROUP & 1 &&
                 is_power(&plan->materials[tile->surface.material[at]]) &&

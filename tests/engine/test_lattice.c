@@ -286,7 +286,7 @@ static void occlude_case(int precision, bool odd)
     {
         uint64_t rays = 0;
         args.rays = &rays;
-        args.open[0] = output("open", KIND_U16, groups);
+        args.unoccluded[0] = output("open", KIND_U16, groups);
         geometry(precision)->occlude(&args);
         compare_outputs("occlude");
     }

@@ -346,7 +346,7 @@ static void occlude_all(shadow_case *c)
         uint64_t rays = 5;
         args.rays = &rays;
         for (uint32_t s = 0; s < args.sample_count; s++)
-            args.open[s] = output("open", KIND_U16, args.group_count);
+            args.unoccluded[s] = output("open", KIND_U16, args.group_count);
         geometry(c->precision)->occlude(&args);
         if (c->soft) // rays resolved for the whole light are not counted
             settled += running != &glint_stages_ref && rays < lit_lanes(c) + 5;

@@ -54,7 +54,7 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
         const size_t p = direction == GLINT_DIFFER_RISING,
                      q = direction == GLINT_DIFFER_ALONG || direction == GLINT_DIFFER_FALLING;
         differ[direction] = differences.sure[direction];
-        for (uint32_t bits = differences.open[direction] & ~differences.sure[direction]; bits; bits &= bits - 1) {
+        for (uint32_t bits = differences.undecided[direction] & ~differences.sure[direction]; bits; bits &= bits - 1) {
             const size_t i = (size_t)__builtin_ctz(bits);
             if (exceeds(refine, lines, line, p + i, q + i))
                 differ[direction] |= bits & -bits;
@@ -88,10 +88,11 @@ static void take_codes(const glint_tile *tile, const glint_image *base, struct g
     }
 }
 
-/// Reorders values from groups into rows: the rows in `open`, and the row below each.
-static void make_rows(const glint_tile *tile, const tile_values *values, uint32_t open, struct glint_differ_work *work)
+/// Reorders values from groups into rows: the rows in `undecided`, and the row below each.
+static void make_rows(const glint_tile *tile, const tile_values *values, uint32_t undecided,
+                      struct glint_differ_work *work)
 {
-    const uint32_t wanted = open | open << 1;
+    const uint32_t wanted = undecided | undecided << 1;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
         const float *from = values->of[v];
         for (uint32_t y = 0; from && y < tile->group_count / tile->groups_across; y++) {
@@ -205,14 +206,14 @@ bool glint_refine_similar(const glint_refine *refine, const glint_refine_range *
 
 /// Returns the rows of a tile that may have differences within them or to the next row, one bit each, by the ranges
 /// of rows of groups. Also computes the range of the tile.
-static uint32_t find_open_rows(const glint_tile *tile, const glint_tile_frame *frame, const tile_values *values,
-                               glint_refine_range *all)
+static uint32_t find_undecided_rows(const glint_tile *tile, const glint_tile_frame *frame, const tile_values *values,
+                                    glint_refine_range *all)
 {
     const uint32_t groups_down = tile->group_count / tile->groups_across;
     const glint_refine *refine = frame->refine;
     const bool none = shows_nothing(tile, frame);
     glint_refine_range range[GLINT_TILE_HEIGHT / 4];
-    uint32_t open = 0;
+    uint32_t undecided = 0;
     find_range(tile, refine, values, 0, groups_down, none, all);
     if (glint_refine_similar(refine, all, all))
         return 0;
@@ -220,19 +221,19 @@ static uint32_t find_open_rows(const glint_tile *tile, const glint_tile_frame *f
         find_range(tile, refine, values, y, 1, none, &range[y]);
     for (uint32_t y = 0; y < groups_down; y++) {
         if (!glint_refine_similar(refine, &range[y], &range[y]))
-            open |= 15u << 4 * y;
+            undecided |= 15u << 4 * y;
         if (y + 1 < groups_down && !glint_refine_similar(refine, &range[y], &range[y + 1]))
-            open |= 8u << 4 * y;
+            undecided |= 8u << 4 * y;
     }
-    return open;
+    return undecided;
 }
 
-/// Compares the rows in `open`, first to last: the pixels of each with each other, and with the next row.
+/// Compares the rows in `undecided`, first to last: the pixels of each with each other, and with the next row.
 static void compare_rows(const glint_tile *tile, const glint_refine *refine, const struct glint_differ_work *work,
-                         uint32_t open, uint32_t chosen[GLINT_TILE_HEIGHT])
+                         uint32_t undecided, uint32_t chosen[GLINT_TILE_HEIGHT])
 {
-    for (; open; open &= open - 1) {
-        const uint32_t y = (uint32_t)__builtin_ctz(open);
+    for (; undecided; undecided &= undecided - 1) {
+        const uint32_t y = (uint32_t)__builtin_ctz(undecided);
         const bool next = y + 1 < tile->height;
         const float *p[GLINT_DIFFER_VALUES], *q[GLINT_DIFFER_VALUES];
         uint32_t differ[GLINT_DIFFER_DIRECTIONS];
@@ -277,16 +278,16 @@ static void compare_inside(const glint_tile *tile, const glint_tile_frame *frame
     struct glint_differ_work *work = tile->differ;
     const glint_refine *refine = frame->refine;
     glint_refine_tile *own = &refine->tiles[tile->index];
-    uint32_t open = UINT32_MAX >> (32 - tile->height);
+    uint32_t undecided = UINT32_MAX >> (32 - tile->height);
     own->ranged = !refine->coded && tile->width % 4 == 0 && tile->height % 4 == 0;
     if (own->ranged)
-        open = find_open_rows(tile, frame, values, &own->range);
-    if (!open)
+        undecided = find_undecided_rows(tile, frame, values, &own->range);
+    if (!undecided)
         return;
     if (!refine->coded)
-        estimate_rows(tile, refine, open | open << 1, values);
-    make_rows(tile, values, open, work);
-    compare_rows(tile, refine, work, open, inside);
+        estimate_rows(tile, refine, undecided | undecided << 1, values);
+    make_rows(tile, values, undecided, work);
+    compare_rows(tile, refine, work, undecided, inside);
 }
 
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)

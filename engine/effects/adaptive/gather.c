@@ -222,7 +222,7 @@ static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint3
         stack_numbers(tile->gathered, tile->surface.material, count, samples);
     for (uint32_t i = 0; i < light_count; i++) {
         const glint_plan_light *light = &plan->lights[i];
-        uint16_t *lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        uint16_t *lit = light->shadows ? tile->at.light[i].unoccluded : tile->at.light[i].lit;
         if (!glint_has_lanes(lit, groups)) {
             memset(lit, 0, sizeof tile->lights[0].lit);
             continue;

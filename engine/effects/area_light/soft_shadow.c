@@ -16,7 +16,7 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
         return false;
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->at.light[i].cosine != glint_tile_own_light(tile, i)->cosine ||
-            (light->shadows && tile->at.light[i].open != glint_tile_own_light(tile, i)->open))
+            (light->shadows && tile->at.light[i].unoccluded != glint_tile_own_light(tile, i)->unoccluded))
             return false;
     return !(plan->dims && glint_tile_find_dim(tile, frame)) &&
            !(plan->tints && light->shadows && glint_tile_may_be_tinted(tile, frame, light));
@@ -40,7 +40,7 @@ static bool sum(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
         return false;
     for (uint32_t i = slot; i < slot + count; i++) {
         memcpy(tile->at.light[i].lit, reached, tile->group_count * sizeof *reached);
-        memcpy(tile->at.light[i].open, reached, tile->group_count * sizeof *reached);
+        memcpy(tile->at.light[i].unoccluded, reached, tile->group_count * sizeof *reached);
         tile->at.light[i].brightest = 0; // unknown: the largest logarithm possible
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);

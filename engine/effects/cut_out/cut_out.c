@@ -368,7 +368,7 @@ static void target_of(const glint_tile *tile, const glint_tile_frame *frame, con
 }
 
 static bool begin_lighting(struct glint_cut_out *cut, const glint_tile *tile, const glint_tile_frame *frame,
-                           const glint_plan_light *light, bool middle, const uint16_t *lit, const uint16_t *open)
+                           const glint_plan_light *light, bool middle, const uint16_t *lit, const uint16_t *unoccluded)
 {
     const glint_precision precision = frame->plan->desc.precision;
     bool any = false;
@@ -377,7 +377,7 @@ static bool begin_lighting(struct glint_cut_out *cut, const glint_tile *tile, co
         const uint16_t bit = (uint16_t)(1u << i % GLINT_GROUP);
         const uint32_t g = i / GLINT_GROUP;
         double point[3], target[3];
-        if (!(lit[g] & ~open[g] & bit))
+        if (!(lit[g] & ~unoccluded[g] & bit))
             continue;
         for (int c = 0; c < 3; c++)
             point[c] = glint_real_at(tile->surface.point[c], precision, i);
@@ -393,7 +393,7 @@ static bool begin_lighting(struct glint_cut_out *cut, const glint_tile *tile, co
 
 /// Continues the rays in holes. Rays without a further surface before the light arrive.
 static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame,
-                  const glint_plan_light *light, bool middle, uint16_t *open)
+                  const glint_plan_light *light, bool middle, uint16_t *unoccluded)
 {
     const glint_precision precision = frame->plan->desc.precision;
     unsigned any = 0;
@@ -406,7 +406,7 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
             tile->counts.shadow++;
             if (!(cut->hits[g] & bit) || beyond) {
                 cut->hits[g] &= (uint16_t)~bit;
-                open[g] |= cut->passed[g] & bit;
+                unoccluded[g] |= cut->passed[g] & bit;
             }
         }
     if (!choose_cut(cut, tile, frame))
@@ -432,12 +432,12 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
 /// After occlude: opens lit points that are only occluded by surfaces with holes in these places. middle: towards the
 /// light's centre, for all samples.
 static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
-                       uint16_t *open)
+                       uint16_t *unoccluded)
 {
     struct glint_cut_out *cut = tile->pattern->cut_out;
-    if (!begin_lighting(cut, tile, frame, light, middle, lit, open))
+    if (!begin_lighting(cut, tile, frame, light, middle, lit, unoccluded))
         return;
-    for (int k = 0; k < HOLES_MAX && go_on(cut, tile, frame, light, middle, open); k++)
+    for (int k = 0; k < HOLES_MAX && go_on(cut, tile, frame, light, middle, unoccluded); k++)
         if (glint_tile_cancelled(frame))
             return;
 }

@@ -301,7 +301,7 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
     const glint_plan_light *light = &frame->plan->lights[row];
     const uint16_t *sampled = frame->plan->runs[GLINT_STAGE_VERTEX] ? tile->at.sampled : tile->at.hits;
     const uint16_t *lit = tile->at.light[slot].lit;
-    const uint16_t *open = light->shadows ? tile->at.light[slot].open : lit;
+    const uint16_t *open = light->shadows ? tile->at.light[slot].unoccluded : lit;
     const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
     const glint_derivative_source source = source_of(tile, light);
     uint16_t lanes[GLINT_TILE_GROUPS];

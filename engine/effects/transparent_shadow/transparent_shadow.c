@@ -102,7 +102,7 @@ bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
 static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? own_of(tile)->dim[g] : 0u);
+        const unsigned whole = tile->at.light[slot].unoccluded[g] & ~(plan->dims ? own_of(tile)->dim[g] : 0u);
         if (tile->at.light[slot].lit[g] & ~whole)
             return true;
     }
@@ -188,7 +188,7 @@ static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint3
     uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };
     for (uint32_t i = slot; i < slot + count; i++)
         for (uint32_t g = 0; g < tile->group_count; g++)
-            lanes[g] |= (uint16_t)(tile->at.light[i].lit[g] & ~tile->at.light[i].open[g]);
+            lanes[g] |= (uint16_t)(tile->at.light[i].lit[g] & ~tile->at.light[i].unoccluded[g]);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned bits = lanes[g]; bits; bits &= bits - 1)
             if (is_black(frame->plan, tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)]))
@@ -201,12 +201,12 @@ static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint3
 static unsigned followed(const glint_tile *tile, uint32_t slot, uint32_t g)
 {
     const unsigned lit = tile->at.light[slot].lit[g];
-    return lit & ~(unsigned)tile->at.light[slot].open[g] & own_of(tile)->tinted[g];
+    return lit & ~(unsigned)tile->at.light[slot].unoccluded[g] & own_of(tile)->tinted[g];
 }
 
 static unsigned dimmed(const glint_tile *tile, const glint_plan *plan, uint32_t slot, uint32_t g)
 {
-    return plan->dims ? tile->at.light[slot].open[g] & own_of(tile)->dim[g] : 0;
+    return plan->dims ? tile->at.light[slot].unoccluded[g] & own_of(tile)->dim[g] : 0;
 }
 
 // ---- Rays ----

@@ -48,7 +48,7 @@ INNER R(tile_group) R(lowest_group)(const R(tile_cast) * tile, const bool gather
 }
 
 /// Returns the lanes that have no hit before `near`.
-INNER unsigned R(open_lanes)(const R(tile_cast) * tile, const R(tile_group) * at, int i, float near)
+INNER unsigned R(lanes_in_front)(const R(tile_cast) * tile, const R(tile_group) * at, int i, float near)
 {
     return fm_bits(f_le(f_set(near), f_load(tile->depth[at->g] + i)));
 }

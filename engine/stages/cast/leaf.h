@@ -301,7 +301,7 @@ INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gath
         const R(tile_group) at = R(lowest_group)(tile, gathered, bits);
         unsigned lanes = 0;
         for (int i = 0; i < GLINT_GROUP; i += VF)
-            lanes |= (R(open_lanes)(tile, &at, i, near) &
+            lanes |= (R(lanes_in_front)(tile, &at, i, near) &
                       between_edges(&leaf->shown, slot, f_load(at.s + i), -f_load(at.t + i)))
                      << i;
         leaf->slot_of_group[n] = (uint8_t)slot;

@@ -33,7 +33,7 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
         else
             for (int i = 0; i < GLINT_GROUP; i += VF) {
                 const vf s = f_load(at.s + i), t = f_load(at.t + i);
-                unsigned near = R(open_lanes)(tile, &at, i, depth) & near_shape(&shape, s, -t);
+                unsigned near = R(lanes_in_front)(tile, &at, i, depth) & near_shape(&shape, s, -t);
                 if (rod.is)
                     near &= near_rod(&rod, s, -t);
                 lanes |= near << i;

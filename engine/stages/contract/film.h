@@ -90,7 +90,7 @@ typedef enum glint_term {
 
 typedef struct glint_shade_light {
     bool joined; ///< another sample of the same light as the element before it in this call, with the same colours
-    const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `open` if it casts shadows
+    const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `undecided` if it casts shadows
     const float *cosine, *attenuation, *log2_specular; ///< attenuation NULL: 1 everywhere
     const float *sine2, *schlick; ///< only read for materials of GLINT_HIGHLIGHT_FACETS
     bool
@@ -200,10 +200,10 @@ typedef struct glint_differ_args {
     float cosine; ///< of normals: they differ below it
 } glint_differ_args;
 
-/// One bit per pair. `sure`: the pair differs. `open`: the pair differs if its estimates do, which low and high leave
-/// undecided; undefined for pairs that are sure.
+/// One bit per pair. `sure`: the pair differs. `undecided`: the pair differs if its estimates do, which low and high
+/// leave undecided; undefined for pairs that are sure.
 typedef struct glint_differences {
-    uint32_t sure[GLINT_DIFFER_DIRECTIONS], open[GLINT_DIFFER_DIRECTIONS];
+    uint32_t sure[GLINT_DIFFER_DIRECTIONS], undecided[GLINT_DIFFER_DIRECTIONS];
 } glint_differences;
 // Bit i stands for (p[i], p[i + 1]) along, (p[i], q[i]) across, (p[i], q[i + 1]) falling and (p[i + 1], q[i]) rising.
 // Pixels differ by object, by normal if the objects are the same and not 0, and by estimate. The arithmetic:

@@ -175,12 +175,11 @@ typedef struct glint_occlude_args {
     void *scratch; ///< area lights: GLINT_OCCLUDE_SCRATCH bytes of memory; NULL: none, and scenes with many occluders
         ///< take longer
     const glint_point_box *box; ///< written by surface: around all lit points, perhaps also others; NULL: unknown
-    uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes without an occluder
+    uint16_t *unoccluded[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes without an occluder
     uint64_t *rays; ///< added to: lit lanes; for area lights, the lanes that no test of the whole light has settled
-    float
-        *visible; ///< out, caps: the visible share of the light in lit lanes, 0 in others; `open` then has the lanes
-    ///< with a share above 0. The table has only spheres and planes, and lamp[0] is the light around `position`; its
-    ///< samples are ignored. NULL: no caps
+    float *visible; ///< out, caps: the visible share of the light in lit lanes, 0 in others; `unoccluded` then has
+    ///< the lanes with a share above 0. The table has only spheres and planes, and lamp[0] is the light around
+    ///< `position`; its samples are ignored. NULL: no caps
     uint64_t *overlaps; ///< caps, added to: pairs of a point and a primitive that were tested
     uint64_t
         *tests; ///< added to: pairs of a point, or of a point and a sample, and a primitive that are decided, as in
@@ -203,7 +202,8 @@ typedef struct glint_occlude_args {
 
 typedef struct glint_soft_args {
     const glint_light_args *light; ///< of an area light; its outputs are not written
-    const glint_occlude_args *occlude; ///< of the same points and samples; `lit` is not read, `open` not written; NULL:
+    const glint_occlude_args
+        *occlude; ///< of the same points and samples; `lit` is not read, `unoccluded` not written; NULL:
         ///< the light casts no shadows
     // out:
     uint16_t *reached; ///< one bit per lane that some sample reaches

@@ -40,7 +40,7 @@ static inline vf apart_in(const float *const *p, int value, uint32_t i, const fl
 
 /// Compares VF pairs, from pixel i of one line and k of another on.
 static inline void differ_pairs(const glint_differ_args *args, const float *const *p, uint32_t i, const float *const *q,
-                                uint32_t k, uint32_t bit, uint32_t *sure, uint32_t *open)
+                                uint32_t k, uint32_t bit, uint32_t *sure, uint32_t *undecided)
 {
     vf cosine = f_load_any(p[GLINT_DIFFER_NORMAL] + i) * f_load_any(q[GLINT_DIFFER_NORMAL] + k);
     for (int c = 1; c < 3; c++)
@@ -53,7 +53,7 @@ static inline void differ_pairs(const glint_differ_args *args, const float *cons
     const fm bent = fm_and(f_lt(f_set(0), id), f_lt(cosine, f_set(args->cosine)));
     const unsigned all = (1u << VF) - 1;
     *sure |= ((~fm_bits(same) & all) | fm_bits(fm_or(bent, f_lt(f_set(args->high), sum)))) << bit;
-    *open |= fm_bits(f_lt(f_set(args->low), sum)) << bit;
+    *undecided |= fm_bits(f_lt(f_set(args->low), sum)) << bit;
 }
 
 /// Returns the lowest `count` bits of 32.
@@ -64,18 +64,21 @@ static inline void differ_lines(const glint_differ_args *args, bool along, bool 
     *out = (glint_differences) { .sure = { 0 } };
     for (uint32_t i = 0; i < args->count; i += VF) {
         if (along)
-            differ_pairs(args, args->p, i, args->p, i + 1, i, &out->sure[GLINT_DIFFER_ALONG], &out->open[GLINT_DIFFER_ALONG]);
+            differ_pairs(args, args->p, i, args->p, i + 1, i, &out->sure[GLINT_DIFFER_ALONG],
+                         &out->undecided[GLINT_DIFFER_ALONG]);
         if (!across)
             continue;
-        differ_pairs(args, args->p, i, args->q, i, i, &out->sure[GLINT_DIFFER_ACROSS], &out->open[GLINT_DIFFER_ACROSS]);
+        differ_pairs(args, args->p, i, args->q, i, i, &out->sure[GLINT_DIFFER_ACROSS],
+                     &out->undecided[GLINT_DIFFER_ACROSS]);
         differ_pairs(args, args->p, i, args->q, i + 1, i, &out->sure[GLINT_DIFFER_FALLING],
-                     &out->open[GLINT_DIFFER_FALLING]);
-        differ_pairs(args, args->p, i + 1, args->q, i, i, &out->sure[GLINT_DIFFER_RISING], &out->open[GLINT_DIFFER_RISING]);
+                     &out->undecided[GLINT_DIFFER_FALLING]);
+        differ_pairs(args, args->p, i + 1, args->q, i, i, &out->sure[GLINT_DIFFER_RISING],
+                     &out->undecided[GLINT_DIFFER_RISING]);
     }
     for (int direction = 0; direction < GLINT_DIFFER_DIRECTIONS; direction++) {
         const uint32_t pairs = first_bits(direction == GLINT_DIFFER_ACROSS ? args->count : args->ahead);
         out->sure[direction] &= pairs;
-        out->open[direction] &= pairs;
+        out->undecided[direction] &= pairs;
     }
 }
 

@@ -204,10 +204,10 @@ static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsign
         }
         from = count ? ids[count - 1] + 1 : 0;
     } while (count == GLINT_CAPS && !is_stopped(args->stop));
-    unsigned open = 0;
+    unsigned unoccluded = 0;
     for (int i = 0; i < GLINT_GROUP; i += VR)
-        open |= rm_bits(r_lt(r_set(0), r_load(cap->visible + i))) << i;
-    return open & lit;
+        unoccluded |= rm_bits(r_lt(r_set(0), r_load(cap->visible + i))) << i;
+    return unoccluded & lit;
 }
 
 static __attribute__((noinline)) void R(occlude_caps)(const glint_occlude_args *args)
@@ -218,15 +218,15 @@ static __attribute__((noinline)) void R(occlude_caps)(const glint_occlude_args *
     R(begin_shadows)(args, lit, &tile);
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
-        unsigned open = lit[g];
+        unsigned unoccluded = lit[g];
         for (int i = 0; i < GLINT_GROUP; i++)
             args->visible[at + (size_t)i] = (float)(lit[g] >> i & 1);
         if (lit[g] && tile.count > 0) {
-            open = R(caps_of_group)(&tile, g, lit[g], &cap);
+            unoccluded = R(caps_of_group)(&tile, g, lit[g], &cap);
             for (unsigned bits = lit[g]; bits; bits &= bits - 1)
                 args->visible[at + (unsigned)__builtin_ctz(bits)] = (float)cap.visible[__builtin_ctz(bits)];
         }
-        args->open[0][g] = (uint16_t)open;
+        args->unoccluded[0][g] = (uint16_t)unoccluded;
     }
 }
 

@@ -125,7 +125,7 @@ static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *fr
             const size_t at = (size_t)g * GLINT_GROUP;
             uint32_t *cell = unsorted->cell + s * GLINT_TILE_SAMPLES + at;
             unsigned within = 0;
-            for (int i = 0; i < GLINT_GROUP && args->open[s][g]; i += VF) {
+            for (int i = 0; i < GLINT_GROUP && args->unoccluded[s][g]; i += VF) {
                 const layer_lanes lanes = lanes_of_layer(frame, s, at, i);
                 fm in = f_le(lanes.from, f_set(HUGE_VALF));
                 vi of[2];
@@ -137,7 +137,7 @@ static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *fr
                 i_store(cell + i, i_add(of[0], i_shl(of[1], 5)));
                 within |= fm_bits(in) << i;
             }
-            within &= args->open[s][g];
+            within &= args->unoccluded[s][g];
             unsorted->within[s][g] = (uint16_t)within;
             count += (unsigned)__builtin_popcount(within);
             for (; within; within &= within - 1)

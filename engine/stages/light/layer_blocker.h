@@ -26,8 +26,8 @@ static inline void R(close_segment)(R(layers) * l, uint32_t i)
     if (l->rays.from[i] == HUGE_VALF)
         return;
     l->rays.from[i] = HUGE_VALF;
-    l->tile->args->open[s][point / GLINT_GROUP] &= (uint16_t) ~(1u << point % GLINT_GROUP);
-    l->open--;
+    l->tile->args->unoccluded[s][point / GLINT_GROUP] &= (uint16_t) ~(1u << point % GLINT_GROUP);
+    l->unoccluded--;
 }
 
 /// Decides the batch: pairs of segments and one primitive.

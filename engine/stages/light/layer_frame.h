@@ -31,7 +31,7 @@ typedef struct R(layers) {
     float least[LAYER_PRIMS][2], most[LAYER_PRIMS][2]; ///< bounds of the positions at which segments that hit it cross
         ///< the plane of its layer
     uint8_t first[LAYER_PRIMS][2], last[LAYER_PRIMS][2]; ///< the cells of these positions
-    uint32_t open; ///< number of unoccluded segments
+    uint32_t unoccluded; ///< number of unoccluded segments
     R(beam_batch) batch;
     _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples
     _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and the rays that hit the points

@@ -91,7 +91,7 @@ static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
 static int R(count_layers)(const R(layers) * l, float low, float high)
 {
     const layer_frame *frame = &l->frame;
-    const float segments = (float)l->open, prims = (float)l->count;
+    const float segments = (float)l->unoccluded, prims = (float)l->count;
     float size[2] = { 0, 0 }, least = HUGE_VALF;
     int best = 1;
     for (int n = 0; n < l->count; n++)
@@ -179,7 +179,7 @@ static void R(block_noted)(R(layers) * l)
         for (int n = 0; n < layers && !pass; n++)
             begin[n + 1] = (uint16_t)(begin[n + 1] + begin[n]);
     }
-    for (int n = 0, from = 0; n < layers && l->open; from = begin[n++])
+    for (int n = 0, from = 0; n < layers && l->unoccluded; from = begin[n++])
         if (begin[n] > from)
             R(block_one_layer)(l, l->order + from, begin[n] - from);
     l->count = 0;
@@ -195,7 +195,7 @@ static void R(walk_layers)(R(layers) * l)
     light_shaft shaft;
     make_shaft(tile->lower, tile->upper, &tile->light, &shaft);
     stack[height++] = 0;
-    while (height > 0 && l->open && !is_stopped(tile->args->stop)) {
+    while (height > 0 && l->unoccluded && !is_stopped(tile->args->stop)) {
         const glint_node *node = &geometry->nodes[stack[--height]];
         const unsigned inside = boxes_in_shaft(node, &shaft), prims = prims_of_node(node);
         for (unsigned bits = inside & ~prims; bits; bits &= bits - 1)
@@ -234,11 +234,11 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
     R(occlude_listed)(tile, lit);
     l->tile = tile;
     l->count = 0;
-    l->open = 0;
+    l->unoccluded = 0;
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (uint32_t g = 0; g < args->group_count; g++)
-            l->open += (unsigned)__builtin_popcount(args->open[s][g]);
-    *args->rays = rays + l->open;
+            l->unoccluded += (unsigned)__builtin_popcount(args->unoccluded[s][g]);
+    *args->rays = rays + l->unoccluded;
     R(begin_segments)(l);
     R(walk_layers)(l);
     return true;

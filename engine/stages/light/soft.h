@@ -38,7 +38,7 @@ typedef struct R(whole_light) {
     bool cone; ///< samples are computed for each group, and hold for the current one
     bool ready; ///< the fields for samples are set
     R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
-    unsigned open[GLINT_LIGHT_CHUNK]; ///< of the current group
+    unsigned unoccluded[GLINT_LIGHT_CHUNK]; ///< of the current group
 } R(whole_light);
 
 /// Returns 1 if the light's box, in the index's frame, is in front of the plane, -1 if it is behind, 0 if neither is
@@ -220,7 +220,7 @@ static void R(load_samples)(const glint_light_sample *const light_sample[], uint
     light->cone = R(is_cone)(light_sample[0]);
 }
 
-/// Removes from every sample's open lanes the lanes of `near` that the tile's occluder k blocks.
+/// Removes from every sample's unoccluded lanes the lanes of `near` that the tile's occluder k blocks.
 static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned near, size_t at,
                                     R(whole_light) * light)
 {
@@ -232,26 +232,27 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
     const unsigned back = sphere ? args->back[at / GLINT_GROUP] & own : 0, others = near & ~own;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &= ~R(blocked_by_triangle)(args, prim, light->light_samples.light_sample[s].position, at,
-                                                      own & light->open[s], near & light->open[s]);
+            light->unoccluded[s] &=
+                ~R(blocked_by_triangle)(args, prim, light->light_samples.light_sample[s].position, at,
+                                        own & light->unoccluded[s], near & light->unoccluded[s]);
         return;
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &=
-                ~R(blocked_by_solid)(args, prim, light->light_samples.light_sample[s].position, at,
-                                     own & light->open[s], near & light->open[s], light->sides[k][s].outside);
+            light->unoccluded[s] &= ~R(blocked_by_solid)(args, prim, light->light_samples.light_sample[s].position, at,
+                                                         own & light->unoccluded[s], near & light->unoccluded[s],
+                                                         light->sides[k][s].outside);
         return;
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
         const unsigned wanted = R(stay_in_combined)(args, prim, at, near);
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &= ~R(blocked_by_combined)(args, prim, light->light_samples.light_sample[s].position, at,
-                                                      wanted & light->open[s]);
+            light->unoccluded[s] &= ~R(blocked_by_combined)(args, prim, light->light_samples.light_sample[s].position,
+                                                            at, wanted & light->unoccluded[s]);
         return;
     }
     for (uint32_t s = 0; back && s < args->sample_count; s++)
-        light->open[s] &= ~(back & light->sides[k][s].outside);
+        light->unoccluded[s] &= ~(back & light->sides[k][s].outside);
     const R(ball) ball = R(ball_of)(prim);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr p[3], d[3], f[3];
@@ -261,7 +262,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
         R(offset)(p, prim, f);
         const vr c = R(point_constant)(f, prim);
         for (uint32_t s = 0; s < args->sample_count; s++) {
-            const unsigned lanes = light->open[s] & others;
+            const unsigned lanes = light->unoccluded[s] & others;
             const R(light_sides) sides = light->sides[k][s];
             const unsigned outside = sides.outside >> i & all, inside = sides.inside >> i & all;
             if (!(lanes >> i & all))
@@ -270,12 +271,12 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
             R(directions_to)(args, light->light_samples.light_sample[s].position, at, i, d);
             const rm hit =
                 sphere ? R(sphere_blocks)(args, &ball, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
-            light->open[s] &= ~((rm_bits(hit) & lanes >> i & all) << i);
+            light->unoccluded[s] &= ~((rm_bits(hit) & lanes >> i & all) << i);
         }
     }
 }
 
-/// Removes the blocked lanes from the open lanes of every sample, for a sorted group.
+/// Removes the blocked lanes from the unoccluded lanes of every sample, for a sorted group.
 static void R(block_group)(const R(shadow_tile) * tile, const R(soft_group) * sorted, size_t at, R(whole_light) * light)
 {
     if (!light->ready)
@@ -300,8 +301,8 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
             sorted = R(sort_group)(tile, &light, &group, lit[g]);
         }
         for (uint32_t s = 0; s < args->sample_count; s++) {
-            light.open[s] = args->lit[s][g] & ~sorted.hidden;
-            *args->rays += (unsigned)__builtin_popcount(light.open[s] & sorted.any_near);
+            light.unoccluded[s] = args->lit[s][g] & ~sorted.hidden;
+            *args->rays += (unsigned)__builtin_popcount(light.unoccluded[s] & sorted.any_near);
         }
         if (sorted.any_near && light.cone)
             R(place_in_cone)
@@ -310,7 +311,7 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
         if (sorted.any_near)
             R(block_group)(tile, &sorted, group.at, &light);
         for (uint32_t s = 0; s < args->sample_count; s++)
-            args->open[s][g] = (uint16_t)light.open[s];
+            args->unoccluded[s][g] = (uint16_t)light.unoccluded[s];
     }
 }
 

@@ -201,7 +201,7 @@ INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool 
         p->nv[j] = -DOT(p->normal[j], p->direction[j]);
     }
     for (uint32_t s = 0; s < args->sample_count; s++) {
-        const unsigned open = call->light.open[s] >> i & ((1u << VF) - 1);
+        const unsigned open = call->light.unoccluded[s] >> i & ((1u << VF) - 1);
         const unsigned before = R(add_sample)(call, kind, glossy, s, i, open, p);
         if (near)
             *call->args->occlude->rays += (unsigned)__builtin_popcount(before & near);
@@ -278,7 +278,7 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
         (args->light->light_sample, args->light->sample_count, args->light->scale, args->light->point,
          args->light->normal, (size_t)cursor.g * GLINT_GROUP, &call->light.light_samples);
         for (uint32_t s = 0; s < GLINT_LIGHT_CHUNK; s++)
-            call->light.open[s] = open;
+            call->light.unoccluded[s] = open;
         if (sorted.any_near)
             R(block_group)(&call->tile, &sorted, group.at, &call->light);
         R(sum_group)(call, cursor, open, sorted.any_near);

@@ -27,19 +27,19 @@ static void R(occlude_walking)(R(shadow_tile) * tile)
         if (!cone)
             R(aim_at)(tile, target);
         for (uint32_t g = 0; g < args->group_count; g++) {
-            unsigned open = args->lit[s][g];
-            *args->rays += (unsigned)__builtin_popcount(open);
-            if (open) {
+            unsigned unoccluded = args->lit[s][g];
+            *args->rays += (unsigned)__builtin_popcount(unoccluded);
+            if (unoccluded) {
                 R(begin_group)(g, &group);
                 if (cone) {
                     R(place_in_cone)
                     (&args->light_sample[s], 1, args->scale, args->point, args->normal, group.at, &light_samples);
                     R(aim_at)(tile, target);
                 }
-                open = R(test_unbounded)(tile, target, &group, open);
-                open = R(walk_group)(tile, target, &group, open);
+                unoccluded = R(test_unbounded)(tile, target, &group, unoccluded);
+                unoccluded = R(walk_group)(tile, target, &group, unoccluded);
             }
-            args->open[s][g] = (uint16_t)open;
+            args->unoccluded[s][g] = (uint16_t)unoccluded;
         }
     }
 }

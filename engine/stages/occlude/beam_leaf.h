@@ -43,9 +43,9 @@ static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigne
         }
         if (w == far[cell])
             stale = cell;
-        beam->tile->args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
+        beam->tile->args->unoccluded[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
         beam->w[i] = -HUGE_VALF;
-        beam->open--;
+        beam->unoccluded--;
     }
     if (stale != none)
         far[stale] = R(farthest_in)(beam, stale);
@@ -211,7 +211,7 @@ static void R(block_triangle)(R(beam) * beam, int slot)
         R(points_near_triangle)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
-/// Removes from args->open the points that the triangles in the slots of `mask` block. Points are found for all
+/// Removes from args->unoccluded the points that the triangles in the slots of `mask` block. Points are found for all
 /// triangles before the first pair is made, without branches, as in groups.h.
 static void R(block_triangles)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {

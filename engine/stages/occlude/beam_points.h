@@ -48,7 +48,7 @@ typedef struct R(beam_leaf) {
 typedef struct R(beam) {
     const R(shadow_tile) * tile;
     screen_view view;
-    uint32_t count, open; ///< points; of these, the ones without an occluder so far
+    uint32_t count, unoccluded; ///< points; of these, the ones without an occluder so far
     // the points in the order of cells, row by row
     _Alignas(64) float uv[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
     _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< -inf for blocked points
@@ -56,7 +56,7 @@ typedef struct R(beam) {
         ///< behind
     uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
     uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where the points of each cell begin
-    _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< maximum w of each cell's open points
+    _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< maximum w of each cell's unoccluded points
     R(beam_batch) batch;
     R(beam_leaf) leaf;
     R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not yet paired with
@@ -193,7 +193,7 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_coords) *
         beam->far[c / SCREEN_ACROSS][c % SCREEN_ACROSS] = -HUGE_VALF;
     }
     beam->begin[BEAM_DOWN * SCREEN_ACROSS] = (uint16_t)beam->count;
-    beam->open = beam->count;
+    beam->unoccluded = beam->count;
     for (uint32_t g = 0; g < args->group_count; g++)
         for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1) {
             const size_t from = (size_t)g * GLINT_GROUP + (unsigned)__builtin_ctz(lanes);

@@ -164,7 +164,7 @@ static void grid_add_points(const glint_light_grid *grid, const grid_coords *coo
     }
 }
 
-/// Adds the open points of a group that may be blocked. Returns false if some projected position is unknown.
+/// Adds the unoccluded points of a group that may be blocked. Returns false if some projected position is unknown.
 static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs *runs, grid_points *points)
 {
     const glint_light_grid *grid = args->grid;
@@ -173,10 +173,10 @@ static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs
     coords->known = 0;
     for (int i = 0; i < GLINT_GROUP; i += VD)
         grid_lane_coords(args, at, i, coords);
-    if (args->open[0][g] & ~coords->known)
+    if (args->unoccluded[0][g] & ~coords->known)
         return false;
-    args->open[0][g] &= (uint16_t)~grid_own(args, at, args->open[0][g] & args->back[g]);
-    const unsigned pending = args->open[0][g] & grid_cells(grid, coords);
+    args->unoccluded[0][g] &= (uint16_t)~grid_own(args, at, args->unoccluded[0][g] & args->back[g]);
+    const unsigned pending = args->unoccluded[0][g] & grid_cells(grid, coords);
     if (!pending)
         return true;
     const unsigned first = (unsigned)__builtin_ctz(pending),
@@ -232,7 +232,7 @@ static uint32_t grid_next(const glint_light_grid *grid, const grid_points *point
     return GLINT_MISS;
 }
 
-/// Makes a pair of each undecided point and its next entry. Points without a next entry are open.
+/// Makes a pair of each undecided point and its next entry. Points without a next entry are unoccluded.
 static void grid_pair(const glint_occlude_args *args, grid_points *points, grid_pairs *pairs)
 {
     pairs->count = 0;
@@ -300,7 +300,7 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
         for (uint32_t n = 0; n < there; n++) {
             const uint32_t k = pairs->point[first + n], at = points->at[k];
             if (blocked >> n & 1)
-                args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
+                args->unoccluded[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
             else
                 points->live[points->live_count++] = (uint16_t)k;
         }
@@ -334,9 +334,9 @@ static inline vf grid_beside(vf center, vf least, vf most)
     return f_max(f_max(least - center, center - most), f_set(0));
 }
 
-/// Returns the lanes of `open`, all in the cell of an entry, that the entry's sphere blocks.
+/// Returns the lanes of `unoccluded`, all in the cell of an entry, that the entry's sphere blocks.
 static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_coords *coords, size_t at, uint32_t entry,
-                                  unsigned open)
+                                  unsigned unoccluded)
 {
     const glint_occlude_args *args = tile->args;
     const glint_light_grid *grid = args->grid;
@@ -349,7 +349,7 @@ static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_coords
             grid_within(size, u - f_load(coords->uv[0] + i), v - f_load(coords->uv[1] + i), f_load(coords->reach + i));
         near |= fm_bits(fm_and(within, grid_before(size, f_load(coords->w + i)))) << i;
     }
-    near &= open & ~lanes_equal(args->prim + at, grid->id[entry]);
+    near &= unoccluded & ~lanes_equal(args->prim + at, grid->id[entry]);
     if (!near)
         return 0;
     const glint_prim *prim = &args->geometry->prims[grid->id[entry]];
@@ -370,25 +370,26 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_coords *coords
 {
     const glint_light_grid *grid = tile->args->grid;
     const grid_bounds bounds = grid_bound(coords, run->lanes);
-    unsigned open = run->lanes;
-    for (uint32_t from = run->next; from < run->end && open; from += VF) {
+    unsigned unoccluded = run->lanes;
+    for (uint32_t from = run->next; from < run->end && unoccluded; from += VF) {
         const unsigned there = run->end - from < VF ? (1u << (run->end - from)) - 1 : (1u << VF) - 1;
         const vi center = grid_load(grid->center + from), size = grid_load(grid->size + from);
         const vf du = grid_beside(grid_step(center), bounds.least[0], bounds.most[0]);
         const vf dv = grid_beside(grid_step(i_shr(center, 16)), bounds.least[1], bounds.most[1]);
         const unsigned before = fm_bits(grid_before(size, bounds.w)) & there;
-        for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && open; near &= near - 1)
-            open &= ~grid_entry_blocks(tile, coords, (size_t)run->group * GLINT_GROUP,
-                                       from + (unsigned)__builtin_ctz(near), open);
+        for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && unoccluded;
+             near &= near - 1)
+            unoccluded &= ~grid_entry_blocks(tile, coords, (size_t)run->group * GLINT_GROUP,
+                                             from + (unsigned)__builtin_ctz(near), unoccluded);
         if (grid->sorted && before != there) // the entries that follow are behind the points
             break;
     }
-    tile->args->open[0][run->group] &= (uint16_t)~(run->lanes & ~open);
+    tile->args->unoccluded[0][run->group] &= (uint16_t)~(run->lanes & ~unoccluded);
 }
 
 // ---- All ----
 
-/// Removes from args->open the points that primitives outside of all cells block.
+/// Removes from args->unoccluded the points that primitives outside of all cells block.
 static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;
@@ -400,14 +401,14 @@ static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
         const occluder_f64 occluder = { grid->others[k], seen_sides_f64(tile, NULL, prim) };
         for (uint32_t g = 0; g < args->group_count; g++) {
             begin_group_f64(g, group);
-            if (args->open[0][g])
-                args->open[0][g] &= (uint16_t)~blocked_by_f64(tile, occluder, group, args->open[0][g]);
+            if (args->unoccluded[0][g])
+                args->unoccluded[0][g] &= (uint16_t)~blocked_by_f64(tile, occluder, group, args->unoccluded[0][g]);
         }
     }
 }
 
-/// Removes from args->open the points that the index's primitives block. Returns false if some projected position is
-/// unknown; then the work is not complete.
+/// Removes from args->unoccluded the points that the index's primitives block. Returns false if some projected position
+/// is unknown; then the work is not complete.
 static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;
@@ -417,7 +418,7 @@ static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
     grid_others(tile, group);
     points.count = runs.count = 0;
     for (uint32_t g = 0; g < args->group_count; g++)
-        if (args->open[0][g] && !grid_add_group(args, g, &runs, &points))
+        if (args->unoccluded[0][g] && !grid_add_group(args, g, &runs, &points))
             return false;
     for (uint32_t i = 0; i < runs.count && !is_stopped(args->stop); i++)
         grid_test_run(tile, &runs.coords[runs.run[i].group], &runs.run[i]);

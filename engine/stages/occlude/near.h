@@ -105,23 +105,23 @@ static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list
     return near | own;
 }
 
-/// Computes the occluders that each group's open lanes are tested against, one bit each; 0 for groups without such
-/// lanes.
+/// Computes the occluders that each group's unoccluded lanes are tested against, one bit each; 0 for groups without
+/// such lanes.
 static void R(find_near)(const R(shadow_tile) * tile, R(shadow_group) * group, uint32_t near[GLINT_TILE_GROUPS])
 {
     const glint_occlude_args *args = tile->args;
-    const uint16_t *open = args->open[0];
+    const uint16_t *unoccluded = args->unoccluded[0];
     R(near_list) list;
     if (GLINT_REAL == 32 || tile->far ||
         tile->count < NEAR_LEAST) { // if float decides, the filter must use the same numbers as the decision
         for (uint32_t g = 0; g < args->group_count; g++)
-            near[g] = open[g] ? R(all_occluders)(tile) : 0;
+            near[g] = unoccluded[g] ? R(all_occluders)(tile) : 0;
         return;
     }
     R(list_balls)(tile, &list);
     for (uint32_t g = 0; g < args->group_count; g++) {
         R(begin_group)(g, group);
-        near[g] = open[g] ? R(near_occluders)(tile, &list, group, open[g]) : 0;
+        near[g] = unoccluded[g] ? R(near_occluders)(tile, &list, group, unoccluded[g]) : 0;
     }
 }
 

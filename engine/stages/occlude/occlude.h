@@ -118,16 +118,16 @@ static inline R(light_sides)
     return R(sides_of)(tile->args, target, prim);
 }
 
-/// Tests a primitive found by traversal. Returns the lanes that are still open.
+/// Tests a primitive found by traversal. Returns the lanes that are still unoccluded.
 static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP],
-                                        R(shadow_group) * group, uint32_t id, unsigned open)
+                                        R(shadow_group) * group, uint32_t id, unsigned unoccluded)
 {
     const glint_prim *prim = &tile->args->geometry->prims[id];
     const R(occluder) occluder = { id, R(seen_sides)(tile, target, prim) };
-    const unsigned blocked = R(blocked_by)(tile, occluder, group, open);
+    const unsigned blocked = R(blocked_by)(tile, occluder, group, unoccluded);
     if (blocked)
         group->last_blocker = id;
-    return open & ~blocked;
+    return unoccluded & ~blocked;
 }
 
 /// The box of a group's lanes, loosened.
@@ -147,37 +147,37 @@ static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * g
 /// Traverses the index with the shaft of a group. Gives up if there are many nodes to visit; *done: whether it did
 /// not.
 static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
-                              unsigned open, bool *done)
+                              unsigned unoccluded, bool *done)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     float lower[3], upper[3];
     uint32_t stack[WALK_STACK];
     int height = 0;
     light_shaft shaft;
-    R(group_box)(tile, group, open, lower, upper);
+    R(group_box)(tile, group, unoccluded, lower, upper);
     make_shaft(lower, upper, &tile->light, &shaft);
     stack[height++] = 0;
-    for (int nodes = 0; height > 0 && open; nodes++) {
+    for (int nodes = 0; height > 0 && unoccluded; nodes++) {
         if (nodes == GLINT_SHAFT_NODES) {
             *done = false;
-            return open;
+            return unoccluded;
         }
         const glint_node *node = &geometry->nodes[stack[--height]];
-        for (unsigned mask = boxes_in_shaft(node, &shaft); mask && open; mask &= mask - 1) {
+        for (unsigned mask = boxes_in_shaft(node, &shaft); mask && unoccluded; mask &= mask - 1) {
             const uint32_t child = node->child[__builtin_ctz(mask)];
             if (child & GLINT_NODE_PRIM)
-                open = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, open);
+                unoccluded = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, unoccluded);
             else
                 stack[height++] = child;
         }
     }
     *done = true;
-    return open;
+    return unoccluded;
 }
 
 /// Traverses the index with the segment of one lane. The primitives found are tested against all unoccluded lanes.
 static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
-                             int lane, unsigned open)
+                             int lane, unsigned unoccluded)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const float far = tile->args->directional ? HUGE_VALF : 1;
@@ -201,39 +201,39 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)
                 stack[height++] = child;
                 continue;
             }
-            open = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, open);
-            if (!(open >> lane & 1))
-                return open;
+            unoccluded = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, unoccluded);
+            if (!(unoccluded >> lane & 1))
+                return unoccluded;
         }
     }
-    return open;
+    return unoccluded;
 }
 
-/// Returns the lanes of `open` that no unbounded surface blocks.
+/// Returns the lanes of `unoccluded` that no unbounded surface blocks.
 static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP],
-                                         R(shadow_group) * group, unsigned open)
+                                         R(shadow_group) * group, unsigned unoccluded)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
-        open = R(test_occluder)(tile, target, group, geometry->unbounded[i], open);
-    return open;
+    for (uint32_t i = 0; i < geometry->unbounded_count && unoccluded; i++)
+        unoccluded = R(test_occluder)(tile, target, group, geometry->unbounded[i], unoccluded);
+    return unoccluded;
 }
 
-/// Returns the lanes of `open` that nothing in the index blocks, for a group that is traversed separately.
+/// Returns the lanes of `unoccluded` that nothing in the index blocks, for a group that is traversed separately.
 static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
-                              unsigned open)
+                              unsigned unoccluded)
 {
     bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
     if (group->last_blocker != GLINT_MISS) // it often blocks the next group, too
-        open = R(test_occluder)(tile, target, group, group->last_blocker, open);
-    if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
-        open = R(walk_shaft)(tile, target, group, open, &done);
+        unoccluded = R(test_occluder)(tile, target, group, group->last_blocker, unoccluded);
+    if (unoccluded && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
+        unoccluded = R(walk_shaft)(tile, target, group, unoccluded, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
-    for (unsigned bits = open; bits && !done && !is_stopped(tile->args->stop); bits &= (bits - 1) & open)
-        open = R(walk_lane)(tile, target, group, __builtin_ctz(bits), open);
-    return open;
+    for (unsigned bits = unoccluded; bits && !done && !is_stopped(tile->args->stop); bits &= (bits - 1) & unoccluded)
+        unoccluded = R(walk_lane)(tile, target, group, __builtin_ctz(bits), unoccluded);
+    return unoccluded;
 }
 
 static void R(place_light)(R(shadow_tile) * tile)

@@ -126,7 +126,7 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     R(decide_batch)(beam, b.prim);
 }
 
-/// Removes from args->open the points that the primitives in the slots of `mask` block.
+/// Removes from args->unoccluded the points that the primitives in the slots of `mask` block.
 static void R(block_prims)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     const unsigned triangles = triangles_in(beam->tile->args->geometry, node, mask);
@@ -149,7 +149,7 @@ static void R(walk_beam)(R(beam) * beam)
     screen_entry stack[WALK_STACK];
     node_on_screen seen[2];
     stack[height++] = entry_of_root(&beam->view);
-    for (; height > 0 && beam->open && !is_stopped(beam->tile->args->stop); turn = !turn) {
+    for (; height > 0 && beam->unoccluded && !is_stopped(beam->tile->args->stop); turn = !turn) {
         const screen_entry top = stack[--height];
         const glint_node *node = &geometry->nodes[top.node];
         unsigned prims = 0;
@@ -186,8 +186,8 @@ static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch
     memset(batch->on, 0xff, sizeof batch->on);
 }
 
-/// Removes from args->open the points that the index's primitives block. Returns false, with nothing changed, if no
-/// beam fits these points.
+/// Removes from args->unoccluded the points that the index's primitives block. Returns false, with nothing changed, if
+/// no beam fits these points.
 static bool R(occlude_beam)(const R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;
@@ -196,9 +196,9 @@ static bool R(occlude_beam)(const R(shadow_tile) * tile)
     beam.tile = tile;
     if (!R(aim_beam)(tile, &beam.view))
         return false;
-    if (!R(project_points)(tile, args->open[0], &beam.view, &coords))
+    if (!R(project_points)(tile, args->unoccluded[0], &beam.view, &coords))
         return false;
-    R(sort_points)(&beam, args->open[0], &coords);
+    R(sort_points)(&beam, args->unoccluded[0], &coords);
     R(begin_batch)(args, &beam.batch);
     R(begin_beam_leaf)(&beam.leaf);
     beam.runs = 0;
@@ -212,24 +212,24 @@ static bool R(occlude_beam)(const R(shadow_tile) * tile)
 static void R(occlude_many)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;
-    uint16_t *open = args->open[0];
+    uint16_t *unoccluded = args->unoccluded[0];
     for (uint32_t g = 0; g < args->group_count; g++) {
         R(begin_group)(g, group);
-        open[g] = (uint16_t)R(test_unbounded)(tile, NULL, group, open[g]);
+        unoccluded[g] = (uint16_t)R(test_unbounded)(tile, NULL, group, unoccluded[g]);
     }
     if (!args->geometry->nodes || R(occlude_by_grid)(tile, group) || R(occlude_beam)(tile))
         return;
     group->last_blocker = GLINT_MISS;
     for (uint32_t g = 0; g < args->group_count; g++)
-        if (open[g]) {
+        if (unoccluded[g]) {
             R(begin_group)(g, group);
-            open[g] = (uint16_t)R(walk_group)(tile, NULL, group, open[g]);
+            unoccluded[g] = (uint16_t)R(walk_group)(tile, NULL, group, unoccluded[g]);
         }
 }
 
 static void R(occlude_point)(const glint_occlude_args *args)
 {
-    uint16_t *out = args->open[0];
+    uint16_t *out = args->unoccluded[0];
     R(shadow_tile) tile;
     R(shadow_group) group;
     group.last_blocker = GLINT_MISS;
@@ -249,13 +249,13 @@ static void R(occlude_point)(const glint_occlude_args *args)
     uint32_t near[GLINT_TILE_GROUPS];
     R(find_near)(&tile, &group, near);
     for (uint32_t g = 0; g < args->group_count; g++) {
-        unsigned open = out[g];
+        unsigned unoccluded = out[g];
         if (!near[g])
             continue;
         R(begin_group)(g, &group);
-        for (unsigned bits = near[g]; bits && open; bits &= bits - 1)
-            open &= ~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(bits)], &group, open);
-        out[g] = (uint16_t)open;
+        for (unsigned bits = near[g]; bits && unoccluded; bits &= bits - 1)
+            unoccluded &= ~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(bits)], &group, unoccluded);
+        out[g] = (uint16_t)unoccluded;
     }
 }
 

@@ -101,7 +101,7 @@ static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)
 static void NAME(occlude_caps)(const glint_occlude_args *args)
 {
     for (uint32_t g = 0; g < args->group_count; g++)
-        args->open[0][g] = 0;
+        args->unoccluded[0][g] = 0;
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
         args->visible[i] = 0;
         if (!(args->lit[0][i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
@@ -109,6 +109,6 @@ static void NAME(occlude_caps)(const glint_occlude_args *args)
         REAL share = NAME(share_seen)(args, i);
         args->visible[i] = (float)share;
         if (share > 0)
-            args->open[0][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+            args->unoccluded[0][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
     }
 }

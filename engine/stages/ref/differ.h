@@ -24,7 +24,7 @@ static void range(const glint_range_args *args, float out[2])
 
 /// Compares pixel i of one line and pixel k of another, as bit `bit`.
 static void differ_pair(const glint_differ_args *args, const float *const *p, uint32_t i, const float *const *q, uint32_t k,
-                        uint32_t bit, uint32_t *sure, uint32_t *open)
+                        uint32_t bit, uint32_t *sure, uint32_t *undecided)
 {
     const float *const *n = p + GLINT_DIFFER_NORMAL, *const *m = q + GLINT_DIFFER_NORMAL;
     const float cosine = (n[0][i] * m[0][k] + n[1][i] * m[1][k]) + n[2][i] * m[2][k];
@@ -37,18 +37,22 @@ static void differ_pair(const glint_differ_args *args, const float *const *p, ui
     if (other || (p[GLINT_DIFFER_ID][i] > 0 && cosine < args->cosine) || sum > args->high)
         *sure |= 1u << bit;
     if (sum > args->low)
-        *open |= 1u << bit;
+        *undecided |= 1u << bit;
 }
 
 static void differ(const glint_differ_args *args, glint_differences *out)
 {
     *out = (glint_differences) { .sure = { 0 } };
     for (uint32_t i = 0; i < args->ahead && args->along; i++)
-        differ_pair(args, args->p, i, args->p, i + 1, i, &out->sure[GLINT_DIFFER_ALONG], &out->open[GLINT_DIFFER_ALONG]);
+        differ_pair(args, args->p, i, args->p, i + 1, i, &out->sure[GLINT_DIFFER_ALONG],
+                    &out->undecided[GLINT_DIFFER_ALONG]);
     for (uint32_t i = 0; i < args->count && args->q; i++)
-        differ_pair(args, args->p, i, args->q, i, i, &out->sure[GLINT_DIFFER_ACROSS], &out->open[GLINT_DIFFER_ACROSS]);
+        differ_pair(args, args->p, i, args->q, i, i, &out->sure[GLINT_DIFFER_ACROSS],
+                    &out->undecided[GLINT_DIFFER_ACROSS]);
     for (uint32_t i = 0; i < args->ahead && args->q; i++) {
-        differ_pair(args, args->p, i, args->q, i + 1, i, &out->sure[GLINT_DIFFER_FALLING], &out->open[GLINT_DIFFER_FALLING]);
-        differ_pair(args, args->p, i + 1, args->q, i, i, &out->sure[GLINT_DIFFER_RISING], &out->open[GLINT_DIFFER_RISING]);
+        differ_pair(args, args->p, i, args->q, i + 1, i, &out->sure[GLINT_DIFFER_FALLING],
+                    &out->undecided[GLINT_DIFFER_FALLING]);
+        differ_pair(args, args->p, i + 1, args->q, i, i, &out->sure[GLINT_DIFFER_RISING],
+                    &out->undecided[GLINT_DIFFER_RISING]);
     }
 }

@@ -70,7 +70,7 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uin
         blocked = NAME(prim_blocks)(args, &args->geometry->prims[k], position, i);
     }
     if (!blocked)
-        args->open[s][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+        args->unoccluded[s][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
 /// The reference tests and counts every lit lane, even if the whole light could be settled at once.
@@ -84,7 +84,7 @@ static void NAME(occlude)(const glint_occlude_args *args)
     }
     for (uint32_t s = 0; s < args->sample_count; s++) {
         for (uint32_t g = 0; g < args->group_count; g++)
-            args->open[s][g] = 0;
+            args->unoccluded[s][g] = 0;
         for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
             NAME(occlude_sample)(args, s, i);
     }

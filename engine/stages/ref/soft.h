@@ -3,7 +3,7 @@
 
 /// The results of light and occlude for each sample.
 typedef struct NAME(soft_rows) {
-    uint16_t lit[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], open[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
+    uint16_t lit[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unoccluded[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
     float cosine[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES], attenuation[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
     float log2_specular[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
 } NAME(soft_rows);
@@ -23,7 +23,7 @@ static void NAME(fill_rows)(const glint_soft_args *args, NAME(soft_rows) * rows)
     glint_occlude_args occlude = *args->occlude;
     for (uint32_t s = 0; s < light.sample_count; s++) {
         occlude.lit[s] = rows->lit[s];
-        occlude.open[s] = rows->open[s];
+        occlude.unoccluded[s] = rows->unoccluded[s];
     }
     NAME(occlude)(&occlude);
 }
@@ -37,7 +37,7 @@ static bool NAME(sum_rows)(const glint_soft_args *args, const NAME(soft_rows) * 
     bool any = false;
     *diffuse = *specular = 0;
     for (uint32_t s = 0; s < light->sample_count; s++) {
-        const uint16_t *reached = args->occlude ? rows->open[s] : rows->lit[s];
+        const uint16_t *reached = args->occlude ? rows->unoccluded[s] : rows->lit[s];
         if (!(reached[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
             continue;
         float w = light->attenuated ? rows->attenuation[s][i] : 1, cosine = rows->cosine[s][i];
