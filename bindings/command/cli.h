@@ -210,7 +210,7 @@ cli_progress *cli_progress_create(bool color);
 void cli_progress_destroy(cli_progress *progress);
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
 /// Shows the current step of a study, the time spent so far, and the expected time of this step and of the rest.
-void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double left_ms);
+void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double remaining_ms);
 /// Shows that a film is being made and has `done` of `count` frames. NULL: the film is finished, and the bar counts
 /// frames again.
 void cli_progress_film(cli_progress *progress, const char *film, size_t done, size_t count);

@@ -16,33 +16,33 @@ typedef struct description {
 
 static void push_params(lua_State *L, const void *context)
 {
-    const description *what = context;
-    glintL_copy_value(what->script, -1, L);
+    const description *subject = context;
+    glintL_copy_value(subject->script, -1, L);
 }
 
 static void push_description(lua_State *L, const void *context)
 {
-    const description *what = context;
+    const description *subject = context;
     lua_newtable(L);
     push_params(L, context);
     lua_setfield(L, -2, "params");
-    lua_pushstring(L, what->run->script);
+    lua_pushstring(L, subject->run->script);
     lua_setfield(L, -2, "script");
-    lua_pushstring(L, what->options->script);
+    lua_pushstring(L, subject->options->script);
     lua_setfield(L, -2, "path");
 }
 
 // Prints the description. May raise in the script's state.
-static void print(const description *what, const char *function, void (*push)(lua_State *L, const void *context))
+static void print(const description *subject, const char *function, void (*push)(lua_State *L, const void *context))
 {
     char message[GLINTL_MESSAGE_SIZE];
     glintL_made_text made;
-    const bool good = glintL_make_text(&MODULE, 1, function, push, what, &made, message);
+    const bool good = glintL_make_text(&MODULE, 1, function, push, subject, &made, message);
     if (good)
-        fwrite(made.text, 1, made.size, what->out);
+        fwrite(made.text, 1, made.size, subject->out);
     glintL_drop_text(&made);
     if (!good)
-        luaL_error(what->script, "%s", message);
+        luaL_error(subject->script, "%s", message);
 }
 
 void cli_print_params(lua_State *L, FILE *out)
@@ -54,11 +54,11 @@ void cli_print_params(lua_State *L, FILE *out)
 
 static int print_protected(lua_State *L)
 {
-    const description *what = lua_touserdata(L, 1);
+    const description *subject = lua_touserdata(L, 1);
     if (glintL_push_unknown_set(L))
         return lua_error(L);
     glintL_push_params(L);
-    print(what, what->options->json ? "event" : "people", push_description);
+    print(subject, subject->options->json ? "event" : "people", push_description);
     return 0;
 }
 
@@ -67,11 +67,11 @@ int cli_describe(cli_options *options, cli_output *output, glintL_run *run)
     cli_script script;
     run->mode = GLINTL_MODE_DESCRIBE;
     bool good = cli_run_script(&script, options, run) || (run->is_stopped && !run->exit_code && !run->interrupted);
-    description what = { script.state, options, run, output->data };
+    description subject = { script.state, options, run, output->data };
     if (good) {
         lua_settop(script.state, 0);
         lua_pushcfunction(script.state, print_protected);
-        lua_pushlightuserdata(script.state, &what);
+        lua_pushlightuserdata(script.state, &subject);
         if (lua_pcall(script.state, 1, 0, 0) != LUA_OK)
             glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(script.state, -1));
     }

@@ -15,7 +15,7 @@ static bool find_numbers(const char *pattern, int64_t **numbers, size_t *count, 
     char folder[GLINTL_PATH_SIZE], made[GLINTL_PATH_SIZE];
     const glintL_naming naming = { .pattern = pattern };
     const char *slash = strrchr(pattern, '/'), *name = slash ? slash + 1 : pattern;
-    size_t before = strcspn(name, "%#"), room = 0;
+    size_t before = strcspn(name, "%#"), capacity = 0;
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - pattern) + 1 : 1, slash ? pattern : ".");
     DIR *directory = opendir(folder);
     if (!directory) {
@@ -30,8 +30,8 @@ static bool find_numbers(const char *pattern, int64_t **numbers, size_t *count, 
         if (number < 0 || number > GLINTL_FRAMES_MAX || !glintL_name_file(&naming, number, "beauty", made) ||
             strcmp(made + (name - pattern), entry->d_name) != 0)
             continue;
-        if (*count == room) {
-            int64_t *grown = realloc(*numbers, (room = room ? 2 * room : 256) * sizeof *grown);
+        if (*count == capacity) {
+            int64_t *grown = realloc(*numbers, (capacity = capacity ? 2 * capacity : 256) * sizeof *grown);
             good = grown != NULL;
             *numbers = grown ? grown : *numbers;
         }

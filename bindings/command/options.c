@@ -37,25 +37,25 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
 }
 
 // Returns the member for the value, at the offset in the option's row.
-static void *place_of(cli_options *options, const cli_option *option) { return (char *)options + option->at; }
+static void *value_of(cli_options *options, const cli_option *option) { return (char *)options + option->at; }
 
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    *(bool *)place_of(options, option) = true;
+    *(bool *)value_of(options, option) = true;
     return true;
 }
 
 static bool read_text(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)message;
-    *(const char **)place_of(options, option) = text;
+    *(const char **)value_of(options, option) = text;
     return true;
 }
 
 static bool read_count(cli_options *options, const cli_option *option, char *text, char *message)
 {
-    return read_whole(text, (int64_t)option->min, (int64_t)option->max, place_of(options, option), message);
+    return read_whole(text, (int64_t)option->min, (int64_t)option->max, value_of(options, option), message);
 }
 
 static bool read_int(cli_options *options, const cli_option *option, char *text, char *message)
@@ -63,7 +63,7 @@ static bool read_int(cli_options *options, const cli_option *option, char *text,
     int64_t value = 0;
     bool good = read_whole(text, (int64_t)option->min, (int64_t)option->max, &value, message);
     if (good)
-        *(int *)place_of(options, option) = (int)value;
+        *(int *)value_of(options, option) = (int)value;
     return good;
 }
 
@@ -72,7 +72,7 @@ static bool read_real(cli_options *options, const cli_option *option, char *text
     char *end;
     double value = strtod(text, &end);
     if (end > text && *end == '\0' && value >= option->min && value <= option->max) {
-        *(double *)place_of(options, option) = value;
+        *(double *)value_of(options, option) = value;
         return true;
     }
     snprintf(message, MESSAGE, "%s expected, got '%.200s'", option->expected, text);

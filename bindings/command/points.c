@@ -309,8 +309,8 @@ static bool changes_points_first(const glintL_order *order, int own)
 // Lists the selected frames of a job in its order.
 static void list_job(points *p, const job *of)
 {
-    for (int64_t place = 0; place < p->order.frames; place++) {
-        const int64_t x = glintL_order_frame(&p->order, place) - 1;
+    for (int64_t position = 0; position < p->order.frames; position++) {
+        const int64_t x = glintL_order_frame(&p->order, position) - 1;
         const int64_t number = x / of->frames * p->frames + of->before + x % of->frames + 1;
         if (glintL_selection_has(&p->run->request.selection, number))
             p->list[p->count++] = number;

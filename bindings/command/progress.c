@@ -24,7 +24,7 @@ struct cli_progress {
     double start_ms;
     int64_t done, kept, todo; // todo 0: unknown
     char what[80]; // name of the step of a study, or of a film; "": the bar counts frames
-    double done_ms, step_ms, left_ms;
+    double done_ms, step_ms, remaining_ms;
     double film_ms; // start time of the film
     glint_renderer *renderer; // set while it renders, otherwise NULL
 };
@@ -44,14 +44,14 @@ static void draw_line(cli_progress *progress, double share, const char *text)
     char bar[BAR_WIDTH + 1];
     struct winsize size = { 0 };
     const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-    int room = columns - (int)strlen(text) - 4; // for brackets, a space, and the last column, which stays empty
-    room = room < BAR_WIDTH ? room : BAR_WIDTH;
+    int width = columns - (int)strlen(text) - 4; // for brackets, a space, and the last column, which stays empty
+    width = width < BAR_WIDTH ? width : BAR_WIDTH;
     share = share < 1 ? share : 1;
     fputs("\r\033[K", stderr);
-    if (room >= BAR_LEAST) {
-        memset(bar, '.', (size_t)room);
-        memset(bar, '#', (size_t)(share * room));
-        bar[room] = '\0';
+    if (width >= BAR_LEAST) {
+        memset(bar, '.', (size_t)width);
+        memset(bar, '#', (size_t)(share * width));
+        bar[width] = '\0';
         fprintf(stderr, "%s[%s]%s ", progress->color ? "\033[36m" : "", bar, progress->color ? "\033[0m" : "");
     }
     fprintf(stderr, "%.*s", columns - 1, text);
@@ -61,20 +61,20 @@ static void draw_line(cli_progress *progress, double share, const char *text)
 
 static void draw_step(cli_progress *progress)
 {
-    char left[32], text[TEXT_SIZE];
+    char remaining[32], text[TEXT_SIZE];
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double done_ms = progress->done_ms + now * progress->step_ms;
-    double left_ms = progress->left_ms + (1 - now) * progress->step_ms;
-    format_time(left, left_ms * 1e-3);
-    snprintf(text, sizeof text, "%s%s%s%s", progress->what, left_ms > 0 ? ", " : "", left_ms > 0 ? left : "",
-             left_ms > 0 ? " left" : "");
-    draw_line(progress, done_ms + left_ms > 0 ? done_ms / (done_ms + left_ms) : 0, text);
+    double remaining_ms = progress->remaining_ms + (1 - now) * progress->step_ms;
+    format_time(remaining, remaining_ms * 1e-3);
+    snprintf(text, sizeof text, "%s%s%s%s", progress->what, remaining_ms > 0 ? ", " : "",
+             remaining_ms > 0 ? remaining : "", remaining_ms > 0 ? " left" : "");
+    draw_line(progress, done_ms + remaining_ms > 0 ? done_ms / (done_ms + remaining_ms) : 0, text);
 }
 
 // The caller holds the lock.
 static void draw(cli_progress *progress)
 {
-    char left[32] = "", total[32] = "", text[TEXT_SIZE];
+    char remaining[32] = "", total[32] = "", text[TEXT_SIZE];
     double elapsed = (glintL_now_ms() - progress->start_ms) * 1e-3;
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing about the speed
@@ -84,9 +84,9 @@ static void draw(cli_progress *progress)
         snprintf(total, sizeof total, "/%" PRId64, progress->todo);
     }
     if (rate > 0 && progress->todo > 0)
-        format_time(left, ((double)progress->todo - (double)progress->done - now) / rate);
+        format_time(remaining, ((double)progress->todo - (double)progress->done - now) / rate);
     snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
-             *left ? ", " : "", left, *left ? " left" : "");
+             *remaining ? ", " : "", remaining, *remaining ? " left" : "");
     draw_line(progress, share, text);
 }
 
@@ -172,13 +172,13 @@ void cli_progress_update(cli_progress *progress, const glintL_run *run, bool ren
     pthread_mutex_unlock(&progress->lock);
 }
 
-void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double left_ms)
+void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double remaining_ms)
 {
     pthread_mutex_lock(&progress->lock);
     snprintf(progress->what, sizeof progress->what, "%s", what);
     progress->done_ms = done_ms;
     progress->step_ms = step_ms;
-    progress->left_ms = left_ms > 0 ? left_ms : 0;
+    progress->remaining_ms = remaining_ms > 0 ? remaining_ms : 0;
     pthread_mutex_unlock(&progress->lock);
 }
 
@@ -192,7 +192,7 @@ void cli_progress_film(cli_progress *progress, const char *film, size_t done, si
     progress->renderer = NULL;
     progress->step_ms = 0;
     progress->done_ms = glintL_now_ms() - progress->film_ms;
-    progress->left_ms = done ? progress->done_ms / (double)done * (double)(count - done) : 0;
+    progress->remaining_ms = done ? progress->done_ms / (double)done * (double)(count - done) : 0;
     progress->what[0] = '\0';
     if (film)
         snprintf(progress->what, sizeof progress->what, "%s %.60s", done < count ? "making" : "finishing", film);

@@ -64,7 +64,7 @@ static double value_at(const range *r, int64_t step)
     return shorten(value, fmax(fabs(r->from), fabs(r->to)));
 }
 
-static bool make_room(cli_sweep *sweep, int64_t count, size_t bytes, char *message)
+static bool ensure_capacity(cli_sweep *sweep, int64_t count, size_t bytes, char *message)
 {
     sweep->count = count;
     sweep->values = malloc((size_t)count * sizeof *sweep->values);
@@ -82,7 +82,7 @@ static bool list_range(cli_sweep *sweep, const range *r, char *message)
                  sweep->name);
         return false;
     }
-    if (!make_room(sweep, r->count, (size_t)r->count * NUMBER_SIZE, message))
+    if (!ensure_capacity(sweep, r->count, (size_t)r->count * NUMBER_SIZE, message))
         return false;
     for (int64_t i = 0; i < r->count; i++) {
         char *text = sweep->texts + i * NUMBER_SIZE;
@@ -99,7 +99,7 @@ static bool list_words(cli_sweep *sweep, const char *text, char *message)
     int64_t count = 1;
     for (const char *at = text; *at; at++)
         count += *at == ',';
-    if (!make_room(sweep, count, strlen(text) + 1, message))
+    if (!ensure_capacity(sweep, count, strlen(text) + 1, message))
         return false;
     char *at = strcpy(sweep->texts, text);
     for (int64_t i = 0; i < count; i++) {

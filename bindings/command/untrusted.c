@@ -92,8 +92,10 @@ static uint64_t most_bytes(void)
 static bool has_written_too_much(watched *child)
 {
     const uint64_t written = bytes_written(child->process);
-    const double left_ms = written < child->most ? (double)(child->most - written) / FASTEST : 0;
-    child->tick_ms = left_ms > TICK_MS ? TICK_MS : left_ms > SHORTEST_TICK_MS ? left_ms : SHORTEST_TICK_MS;
+    const double remaining_ms = written < child->most ? (double)(child->most - written) / FASTEST : 0;
+    child->tick_ms = remaining_ms > TICK_MS            ? TICK_MS
+                     : remaining_ms > SHORTEST_TICK_MS ? remaining_ms
+                                                       : SHORTEST_TICK_MS;
     return written > child->most;
 }
 
@@ -113,8 +115,8 @@ static int watch_child(watched *child, const sigset_t *signals)
 {
     int status;
     for (;;) {
-        const double left_ms = child->until_ms - glintL_now_ms();
-        const double wait_ms = left_ms < child->tick_ms ? left_ms : child->tick_ms;
+        const double remaining_ms = child->until_ms - glintL_now_ms();
+        const double wait_ms = remaining_ms < child->tick_ms ? remaining_ms : child->tick_ms;
         const struct timespec wait = { 0, wait_ms > 0 ? (long)(1e6 * wait_ms) : 0 };
         const int number = sigtimedwait(signals, NULL, &wait);
         if (waitpid(child->process, &status, WNOHANG) == child->process)

@@ -26,20 +26,20 @@
 #define OPEN_FILES_LIMIT 64
 #define CPU_SLACK_S 2 // beyond the parent's time limit, which comes first
 
-static bool fail(char *message, const char *what)
+static bool fail(char *message, const char *name)
 {
-    snprintf(message, GLINTL_MESSAGE_SIZE, "--untrusted: %.200s: %s", what, strerror(errno));
+    snprintf(message, GLINTL_MESSAGE_SIZE, "--untrusted: %.200s: %s", name, strerror(errno));
     return false;
 }
 
 // ---- Limits ----
 
-static bool set_limit(int what, rlim_t most)
+static bool set_limit(int name, rlim_t most)
 {
     struct rlimit limit = { most, most }, now;
-    if (getrlimit(what, &now) == 0 && now.rlim_max < most)
+    if (getrlimit(name, &now) == 0 && now.rlim_max < most)
         limit.rlim_cur = limit.rlim_max = now.rlim_max;
-    return setrlimit(what, &limit) == 0;
+    return setrlimit(name, &limit) == 0;
 }
 
 static bool set_limits(double seconds, char *message)

@@ -31,7 +31,7 @@ static bool read_scene(cli_options *options, glintL_run *run, cost_moments **mom
     glintL_selection_clear(&run->request.selection); // here --frame is not a selection
     cli_run_script(&script, options, run);
     cli_close_script(&script);
-    if (!run->exit_code && !run->interrupted && !run->kept_scene)
+    if (!run->exit_code && !run->interrupted && !run->retained_scene)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
                         "--frame: expected a frame of the script, 1 .. %" PRId64 ", got '%" PRId64 "'", run->count,
                         options->frame);
@@ -123,10 +123,10 @@ static bool measure_cases(cost_study *study, int from)
         cost_case *c = &study->cases[i];
         if (c->is_left_out)
             continue;
-        double left = cost_round_ms(study) * study->runs;
+        double remaining_ms = cost_round_ms(study) * study->runs;
         for (int later = i + 1; later < study->case_count; later++)
-            left += study->cases[later].is_left_out ? 0 : study->overhead_ms + study->cases[later].estimate_ms;
-        cost_show(study, "errors", study->overhead_ms + c->estimate_ms, left);
+            remaining_ms += study->cases[later].is_left_out ? 0 : study->overhead_ms + study->cases[later].estimate_ms;
+        cost_show(study, "errors", study->overhead_ms + c->estimate_ms, remaining_ms);
         if (cost_is_stopped(study) || !cost_measure(study, c))
             return false;
     }
@@ -158,7 +158,7 @@ static bool name_unmeasured(cost_study *study)
 
 // Returns whether the budget has time to measure the script's own setting, which takes BASE_FRAMES frames after the
 // first.
-static bool has_room(const cost_study *study)
+static bool has_capacity(const cost_study *study)
 {
     return cost_left_ms(study) >= BASE_FRAMES * study->cases[0].estimate_ms;
 }
@@ -178,7 +178,7 @@ static bool run_study(cost_study *study)
     if (!cost_open_renderers(study) || !cost_run(study, &study->cases[0]))
         return false;
     study->cases[0].is_first_alone = true;
-    if (!has_room(study))
+    if (!has_capacity(study))
         return stop_after_first(study);
     if (!guess_all(study, 1))
         return false;
@@ -220,7 +220,7 @@ static void close_study(cost_study *study)
 }
 
 // Warns that a frame with an open shutter is measured as an instant, because its times are not known.
-static bool tell_of_instant(cost_study *study)
+static bool warn_of_instant(cost_study *study)
 {
     const char *lack = cost_moments_lack(study->moments);
     return !lack || cost_leave_out(study, "the open shutter: %s; the frame is measured at one instant, without "
@@ -242,7 +242,7 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
     study->options = options;
     study->moments = moments;
     study->shutter_times = cost_moments_counts(moments, times) > 0 ? (int)times[0] : 0;
-    study->own = &run->kept_render;
+    study->own = &run->retained_render;
     study->runs = options->quick ? RUNS_QUICK : RUNS;
     study->most_runs = MORE_RUNS * study->runs < COST_RUNS_MAX ? MORE_RUNS * study->runs : COST_RUNS_MAX;
     study->run_ms = options->quick ? RUN_QUICK_MS : RUN_MS;
@@ -252,12 +252,12 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
                              .render = study->own,
                              .scene = &study->scene,
                              .moments = moments,
-                             .has_neighbour = run->kept_neighbour != NULL,
+                             .has_neighbour = run->retained_neighbour != NULL,
                              .is_pfm = glintL_name_is_linear(study->own->output) };
-    if (!cost_scene_open(&study->scene, run->kept_scene))
+    if (!cost_scene_open(&study->scene, run->retained_scene))
         glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
     else if (cost_list_cases(study, &subject))
-        tell_of_instant(study);
+        warn_of_instant(study);
     return study;
 }
 

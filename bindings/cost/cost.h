@@ -317,7 +317,7 @@ double cost_quartile_range(const cost_case *c); ///< of COST_CPU
 bool cost_is_apart(const cost_study *study, int index);
 double cost_round_ms(const cost_study *study); ///< time to run every case once that is not left out, as far as known
 /// Shows the current step on a terminal, with the expected time of this step and of the rest of the study.
-void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms);
+void cost_show(const cost_study *study, const char *what, double step_ms, double remaining_ms);
 
 // ---- cost/front.c ----
 

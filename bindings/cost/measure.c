@@ -31,7 +31,7 @@ bool cost_open_renderers(cost_study *study)
 {
     glintL_run *run = study->run;
     glint_error error;
-    for (int keeps = run->kept_neighbour ? 1 : 0; keeps >= 0; keeps--)
+    for (int keeps = run->retained_neighbour ? 1 : 0; keeps >= 0; keeps--)
         for (int counts = 1; counts >= 0; counts--) {
             run->renderer = NULL;
             run->request.no_reuse = !keeps;
@@ -212,7 +212,7 @@ static glint_status prepare(cost_study *study, const cost_draft *draft, bool cou
     use_renderer(study, study->renderers[draft->reuses][counts]);
     if (!draft->reuses)
         return GLINT_OK;
-    glint_status status = glint_render(study->run->renderer, study->run->kept_neighbour, &before, NULL, error);
+    glint_status status = glint_render(study->run->renderer, study->run->retained_neighbour, &before, NULL, error);
     if (!status && draft->render.desc.codes)
         status = encode(study, &draft->render, before, &ms, error);
     glint_image_release(before);

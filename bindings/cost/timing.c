@@ -20,10 +20,10 @@ double cost_left_ms(const cost_study *study)
     return study->deadline_ms > 0 ? study->deadline_ms - glintL_now_ms() : INFINITY;
 }
 
-void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms)
+void cost_show(const cost_study *study, const char *what, double step_ms, double remaining_ms)
 {
     if (study->output->progress)
-        cli_progress_step(study->output->progress, what, glintL_now_ms() - study->start_ms, step_ms, left_ms);
+        cli_progress_step(study->output->progress, what, glintL_now_ms() - study->start_ms, step_ms, remaining_ms);
 }
 
 // ---- The budget ----
@@ -84,14 +84,14 @@ static void shuffle(cost_study *study, int *order, int count)
     }
 }
 
-static bool run_round(cost_study *study, int *order, int count, double left)
+static bool run_round(cost_study *study, int *order, int count, double remaining)
 {
     shuffle(study, order, count);
     for (int i = 0; i < count; i++) {
         cost_case *c = &study->cases[order[i]];
         const double step = c->estimate_ms;
-        left -= step;
-        cost_show(study, "timing", step, left);
+        remaining -= step;
+        cost_show(study, "timing", step, remaining);
         if (cost_is_stopped(study) || !cost_run(study, c))
             return false;
     }
@@ -120,7 +120,7 @@ static int list_cases(cost_study *study, bool more, int *order, double *ms)
 
 // Runs the cases again whose quartile range overlaps a neighbour's. If the ranges always overlap, the two cost the
 // same.
-static bool tell_apart(cost_study *study, int *order)
+static bool distinguish(cost_study *study, int *order)
 {
     double ms;
     int count;
@@ -142,7 +142,7 @@ bool cost_time_cases(cost_study *study)
     for (int round = 0; round < study->runs && good; round++)
         good = run_round(study, order, count, ms * (study->runs - round));
     if (good && study->runs >= COST_RUNS_LEAST)
-        good = tell_apart(study, order);
+        good = distinguish(study, order);
     free(order);
     return good;
 }

@@ -239,7 +239,7 @@ static int save(lua_State *L)
     glintL_check_status(L, "save", &error, status);
     if (desc.pass == GLINT_PASS_BEAUTY && !run->measures && !glintL_name_is_linear(desc.path))
         glintL_look_at_brightness(run, glintL_check_object(L, 1, GLINTL_IMAGE), &desc.tone);
-    if (!run->measures && !glintL_places_note(run, "save", desc.path, run->count))
+    if (!run->measures && !glintL_written_note(run, "save", desc.path, run->count))
         return glintL_error(L, "save: %s", run->message);
     lua_pushboolean(L, true);
     return 1;

@@ -5,11 +5,11 @@
 
 #define PATH_SIZE 32
 
-static void fetch(lua_State *L, const char *name, int place)
+static void fetch(lua_State *L, const char *name, int index)
 {
     lua_pushstring(L, name);
     lua_rawget(L, 1);
-    lua_replace(L, place);
+    lua_replace(L, index);
 }
 
 // Checks one number of the index, counted from 1.

@@ -80,11 +80,11 @@ static const glintL_many MANY = { .object = "mesh",
                                   .pointers = POINTERS,
                                   .kept = KEPT };
 
-static void fetch(lua_State *L, const char *name, int place)
+static void fetch(lua_State *L, const char *name, int index)
 {
     lua_pushstring(L, name);
     lua_rawget(L, ARGUMENT);
-    lua_replace(L, place);
+    lua_replace(L, index);
 }
 
 // ---- Vertices, normals and coordinates ----
@@ -131,11 +131,11 @@ static void read_entry(lua_State *L, const char *path, const entry_kind *kind, d
     }
 }
 
-static double *read_point_list(lua_State *L, int place, const entry_kind *kind, int buffer, size_t *count)
+static double *read_point_list(lua_State *L, int index, const entry_kind *kind, int buffer, size_t *count)
 {
     char path[64];
-    const size_t entries = glintL_check_list(L, place, kind->name, false), size = (size_t)kind->size;
-    const bool flat = lua_rawgeti(L, place, 1) == LUA_TNUMBER;
+    const size_t entries = glintL_check_list(L, index, kind->name, false), size = (size_t)kind->size;
+    const bool flat = lua_rawgeti(L, index, 1) == LUA_TNUMBER;
     lua_pop(L, 1);
     if (flat && entries % size != 0)
         glintL_error(L, "mesh.%s: %d numbers each expected, got %I numbers", kind->name, kind->size,
@@ -144,24 +144,24 @@ static double *read_point_list(lua_State *L, int place, const entry_kind *kind, 
     double *out = new_numbers(L, size * *count, buffer);
     for (size_t i = 0; i < entries; i++) {
         if (flat) {
-            read_number(L, place, i + 1, kind->name, &out[i]);
+            read_number(L, index, i + 1, kind->name, &out[i]);
             continue;
         }
         strncpy(path, lua_pushfstring(L, "mesh.%s[%I]", kind->name, (LUAI_UACINT)i + 1), sizeof path - 1);
         path[sizeof path - 1] = 0;
         lua_pop(L, 1);
-        lua_rawgeti(L, place, (lua_Integer)i + 1);
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
         read_entry(L, path, kind, out + size * i);
         lua_pop(L, 1);
     }
     return out;
 }
 
-static double *read_packed_points(lua_State *L, const arguments *a, int place, const entry_kind *kind, int buffer,
+static double *read_packed_points(lua_State *L, const arguments *a, int index, const entry_kind *kind, int buffer,
                                   size_t *count)
 {
     size_t bytes;
-    const char *packed = lua_tolstring(L, place, &bytes);
+    const char *packed = lua_tolstring(L, index, &bytes);
     const size_t size = a->format == 1 ? sizeof(float) : sizeof(double), each = (size_t)kind->size * size;
     if (bytes % each != 0)
         glintL_error(L, "mesh.%s: %d bytes each (%s in %s) expected, got %I bytes", kind->name, (int)each,
@@ -177,17 +177,17 @@ static double *read_packed_points(lua_State *L, const arguments *a, int place, c
     return out;
 }
 
-static double *read_points(lua_State *L, const arguments *a, int place, const entry_kind *kind, int buffer,
+static double *read_points(lua_State *L, const arguments *a, int index, const entry_kind *kind, int buffer,
                            size_t *count)
 {
     char path[32] = "mesh.", expected[64];
-    if (lua_istable(L, place))
-        return read_point_list(L, place, kind, buffer, count);
-    if (lua_type(L, place) == LUA_TSTRING)
-        return read_packed_points(L, a, place, kind, buffer, count);
+    if (lua_istable(L, index))
+        return read_point_list(L, index, kind, buffer, count);
+    if (lua_type(L, index) == LUA_TSTRING)
+        return read_packed_points(L, a, index, kind, buffer, count);
     strcat(path, kind->name);
     snprintf(expected, sizeof expected, "list of %s, flat table or packed string", kind->form);
-    glintL_refuse(L, place, path, expected);
+    glintL_refuse(L, index, path, expected);
     return NULL;
 }
 
@@ -195,8 +195,8 @@ static void read_format(lua_State *L, arguments *a)
 {
     static const glintL_field field = { .name = "format", .type = GLINT_TYPE_CHOICE, .offset = AT(format), .names = FORMATS };
     bool packed = false;
-    for (int place = VERTICES; place <= UV; place++)
-        packed = packed || (place != FACES && lua_type(L, place) == LUA_TSTRING);
+    for (int index = VERTICES; index <= UV; index++)
+        packed = packed || (index != FACES && lua_type(L, index) == LUA_TSTRING);
     fetch(L, "format", OTHER);
     if (packed) {
         glintL_read_field(L, OTHER, "mesh", &field, a);

@@ -50,12 +50,12 @@ static double slope(const track *k, uint32_t i, uint32_t c)
     const uint32_t last = k->count - 1;
     if (i > 0 && i < last)
         return (key_value(k, i + 1, c) - key_value(k, i - 1, c)) / (key_time(k, i + 1) - key_time(k, i - 1));
-    const double first_way = key_time(k, 1) - key_time(k, 0), last_way = key_time(k, last) - key_time(k, last - 1);
+    const double first_span = key_time(k, 1) - key_time(k, 0), last_span = key_time(k, last) - key_time(k, last - 1);
     const double first_rise = key_value(k, 1, c) - key_value(k, 0, c);
     const double last_rise = key_value(k, last, c) - key_value(k, last - 1, c);
     if (k->cyclic)
-        return (first_rise + last_rise) / (first_way + last_way);
-    return i == 0 ? first_rise / first_way : last_rise / last_way;
+        return (first_rise + last_rise) / (first_span + last_span);
+    return i == 0 ? first_rise / first_span : last_rise / last_span;
 }
 
 /// Returns component c between keys i and i + 1, at the share t of the interval.
@@ -66,8 +66,8 @@ static double between(const track *k, uint32_t i, double t, uint32_t c)
         return t <= 0 ? a : b;
     if (k->ease != EASE_SPLINE)
         return a + eased(k->ease, t) * (b - a);
-    const double way = key_time(k, i + 1) - key_time(k, i), s = t * t * (3 - 2 * t), rest = 1 - t;
-    return (a + s * (b - a)) + way * (t * rest * (rest * slope(k, i, c) - t * slope(k, i + 1, c)));
+    const double span = key_time(k, i + 1) - key_time(k, i), s = t * t * (3 - 2 * t), rest = 1 - t;
+    return (a + s * (b - a)) + span * (t * rest * (rest * slope(k, i, c) - t * slope(k, i + 1, c)));
 }
 
 // ---- In and out ----

@@ -74,17 +74,17 @@ static void read_position(lua_State *L, int index, const char *path, void *desc)
 
 static void push_position(lua_State *L, const void *desc) { push_pair(L, ((const desc_type *)desc)->position, "position"); }
 
-static void copy_text(lua_State *L, int index, const char *path, char *out, size_t room)
+static void copy_text(lua_State *L, int index, const char *path, char *out, size_t capacity)
 {
     size_t length;
     if (lua_type(L, index) != LUA_TSTRING)
         glintL_refuse(L, index, path, "string");
     const char *text = lua_tolstring(L, index, &length);
-    if (length >= room)
-        glintL_error(L, "%s: at most %d bytes expected, got %d", path, (int)room - 1, (int)length);
+    if (length >= capacity)
+        glintL_error(L, "%s: at most %d bytes expected, got %d", path, (int)capacity - 1, (int)length);
     if (memchr(text, '\0', length))
         glintL_error(L, "%s: string without a zero byte expected", path);
-    memset(out, 0, room);
+    memset(out, 0, capacity);
     memcpy(out, text, length);
 }
 

@@ -37,12 +37,12 @@ static bool keep_object(lua_State *L, int index, const void *object, int value)
         lua_pushvalue(L, -1);
         lua_setiuservalue(L, index, 1);
     }
-    bool was_kept = lua_rawgetp(L, -1, object) != LUA_TNIL;
+    bool was_retained = lua_rawgetp(L, -1, object) != LUA_TNIL;
     lua_pop(L, 1);
     lua_pushvalue(L, value);
     lua_rawsetp(L, -2, object);
     lua_pop(L, 1);
-    return was_kept;
+    return was_retained;
 }
 
 static void drop_object(lua_State *L, int index, const void *object)
@@ -132,7 +132,7 @@ static void add_member(lua_State *L, int index, int value, const char *path)
     }
     member m = check_member(L, value, path);
     const void *object = object_of(&m);
-    bool was_kept = keep_object(L, index, object, value);
+    bool was_retained = keep_object(L, index, object, value);
     m = check_member(L, value, path); // again: storing allocates, and may run finalizers
     glint_scene *scene = glintL_check_object(L, index, GLINTL_SCENE);
     if (m.shape)
@@ -141,7 +141,7 @@ static void add_member(lua_State *L, int index, int value, const char *path)
         status = glint_scene_add_light(scene, m.light, &error);
     else
         status = glint_scene_add_overlay(scene, m.overlay, &error);
-    if (status && !was_kept)
+    if (status && !was_retained)
         drop_object(L, index, object);
     glintL_check_status(L, "scene", &error, status);
 }

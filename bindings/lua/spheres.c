@@ -40,11 +40,11 @@ static const glintL_many MANY = { .object = "spheres",
                                   .kept = KEPT };
 
 // Copies a field of the argument to its position on the stack.
-static void fetch(lua_State *L, const char *name, int place)
+static void fetch(lua_State *L, const char *name, int index)
 {
     lua_pushstring(L, name);
     lua_rawget(L, ARGUMENT);
-    lua_replace(L, place);
+    lua_replace(L, index);
 }
 
 static void read_format(lua_State *L, arguments *a)

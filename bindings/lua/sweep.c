@@ -164,7 +164,7 @@ void glintL_sweep_build(lua_State *L, int index, int64_t n)
         rest /= count;
         lua_settop(L, axes);
     }
-    glintL_sweep_push_place(L, index, n);
+    glintL_sweep_push_position(L, index, n);
     lua_setiuservalue(L, index, GLINTL_JOB_PLACE);
     lua_settop(L, top);
 }

@@ -55,16 +55,16 @@ static int apply_each(lua_State *L)
 }
 
 // Operations on a point: a vector, or x, y and z.
-static int apply_place(lua_State *L)
+static int apply_position(lua_State *L)
 {
     const glint_op op = this_op(L);
     const glint_op_info *info = glint_op_info_of(op);
-    glintL_term place[3], results[GLINT_RESULTS_MAX];
+    glintL_term position[3], results[GLINT_RESULTS_MAX];
     check_count(L, info, 1, 3);
-    const int end = glintL_read_place(L, 1, info->name, place);
+    const int end = glintL_read_position(L, 1, info->name, position);
     if (lua_gettop(L) >= end)
         return glintL_error(L, "%s: a vector, or x, y and z expected, got more", info->name);
-    glintL_apply(L, op, place, results);
+    glintL_apply(L, op, position, results);
     if (op == GLINT_OP_NOISE3) {
         glintL_push_triple(L, results);
         return 1;
@@ -74,7 +74,7 @@ static int apply_place(lua_State *L)
     return (int)info->results;
 }
 
-static bool is_of_places(glint_op op)
+static bool is_of_positions(glint_op op)
 {
     return op == GLINT_OP_NOISE || op == GLINT_OP_NOISE3 || op == GLINT_OP_CELL || op == GLINT_OP_HASH ||
            op == GLINT_OP_PARITY;
@@ -125,7 +125,7 @@ static const struct {
 // Computes exp, log or tan. Upvalues: the function for plain numbers, the index in COMPOSED.
 static int apply_composed(lua_State *L)
 {
-    const lua_Integer place = lua_tointeger(L, lua_upvalueindex(2));
+    const lua_Integer index = lua_tointeger(L, lua_upvalueindex(2));
     glintL_operand x;
     const bool is_alone = lua_gettop(L) == 1 && (glintL_current_trace(L) || glintL_to_vector(L, 1) || lua_istable(L, 1));
     if (!is_alone || glintL_is_module(L, 1)) {
@@ -134,9 +134,9 @@ static int apply_composed(lua_State *L)
         lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
         return lua_gettop(L);
     }
-    glintL_read_operand(L, 1, COMPOSED[place].name, &x);
+    glintL_read_operand(L, 1, COMPOSED[index].name, &x);
     for (int i = 0; i < (x.is_vector ? 3 : 1); i++)
-        x.at[i] = COMPOSED[place].apply(L, x.at[i]);
+        x.at[i] = COMPOSED[index].apply(L, x.at[i]);
     glintL_push_operand(L, &x);
     return 1;
 }
@@ -146,7 +146,7 @@ void glintL_open_operation(lua_State *L)
     for (glint_op op = 0; op <= GLINT_OP_PARITY; op++) {
         const bool folds = op == GLINT_OP_MIN || op == GLINT_OP_MAX;
         lua_pushinteger(L, (lua_Integer)op);
-        lua_pushcclosure(L, is_of_places(op) ? apply_place : folds ? apply_fold : apply_each, 1);
+        lua_pushcclosure(L, is_of_positions(op) ? apply_position : folds ? apply_fold : apply_each, 1);
         lua_setfield(L, -2, glint_op_info_of(op)->name);
     }
     for (size_t i = 0; i < COMPOSED_COUNT; i++) {

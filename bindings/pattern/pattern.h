@@ -86,7 +86,7 @@ void glintL_read_operand(lua_State *L, int index, const char *path, glintL_opera
 /// Reads one number or symbol.
 glintL_term glintL_read_term(lua_State *L, int index, const char *path);
 /// Reads a point: a vector in one argument, or three numbers. Returns the index after it.
-int glintL_read_place(lua_State *L, int index, const char *path, glintL_term out[3]);
+int glintL_read_position(lua_State *L, int index, const char *path, glintL_term out[3]);
 void glintL_push_term(lua_State *L, glintL_term term);
 void glintL_push_choice(lua_State *L, glintL_term term); ///< for a value of 0 or 1; see glintL_trace.before
 void glintL_push_operand(lua_State *L, const glintL_operand *operand);
@@ -128,7 +128,7 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background);
 size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_INPUT_COUNT], double *outputs);
 
 /// Pushes the position of the function of the pattern at `index`, "scene.lua:12: "; "": it has no function.
-const char *glintL_push_pattern_place(lua_State *L, int index);
+const char *glintL_push_pattern_position(lua_State *L, int index);
 
 // ---- points.c ----
 

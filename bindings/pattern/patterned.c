@@ -113,10 +113,10 @@ static bool changes(const glint_program *program)
 }
 
 // Pushes the position of the function of the field's pattern.
-static const char *push_place(lua_State *L, int index, const glintL_field *field)
+static const char *push_position(lua_State *L, int index, const glintL_field *field)
 {
     luaL_checkstack(L, 4, "message");
-    return glintL_push_kept(L, index, field->name) ? glintL_push_pattern_place(L, -1) : lua_pushliteral(L, "");
+    return glintL_push_kept(L, index, field->name) ? glintL_push_pattern_position(L, -1) : lua_pushliteral(L, "");
 }
 
 // Raises the engine's error, with the position of the function of the field that the message names first.
@@ -127,10 +127,10 @@ static void refuse_field(lua_State *L, int index, const char *name, const glintL
     for (const glintL_field *field = fields; field->name && status == GLINT_ERR_INVALID; field++) {
         if (!field->program_offset || strncmp(field->name, error->message, length) != 0 || field->name[length])
             continue;
-        const char *place = push_place(L, index, field);
-        if (!*place)
+        const char *position = push_position(L, index, field);
+        if (!*position)
             break;
-        lua_pushfstring(L, "%s%s.%s", place, name, error->message);
+        lua_pushfstring(L, "%s%s.%s", position, name, error->message);
         lua_error(L);
     }
     glintL_check_status(L, name, error, status);
@@ -168,7 +168,7 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
         sloped = sloped || (program && changes(program));
         if (program && changes(program) && glint_program_constant(program, outputs)) {
             lua_pushfstring(L, "%s%s.%s: a pattern with the same number everywhere has no derivative; assign the number itself",
-                            push_place(L, index, field), type + sizeof "glint." - 1, field->name);
+                            push_position(L, index, field), type + sizeof "glint." - 1, field->name);
             lua_error(L);
         }
         memcpy(desc.bytes + field->program_offset, &program, sizeof program);
@@ -194,12 +194,12 @@ void glintL_trace_material(lua_State *L, int index)
 
 typedef struct entry {
     const glint_material *material;
-    lua_Integer place; // of its userdata, in a list
-    size_t met; // number of the scene's background, from 1; 0: another scene's
+    lua_Integer position; // of its userdata, in a list
+    size_t order; // number of the scene's background, from 1; 0: another scene's
 } entry;
 
 typedef struct entries {
-    size_t count, met;
+    size_t count, order;
     entry items[];
 } entries;
 
@@ -211,22 +211,22 @@ static int by_address(const void *a, const void *b)
 
 static int by_turn(const void *a, const void *b)
 {
-    const size_t left = ((const entry *)a)->met, right = ((const entry *)b)->met;
+    const size_t left = ((const entry *)a)->order, right = ((const entry *)b)->order;
     return (left > right) - (left < right);
 }
 
-static void meet(entries *all, const glint_shape *shape)
+static void visit_backgrounds(entries *all, const glint_shape *shape)
 {
     glint_material *const *list;
     const size_t count = glint_shape_materials(shape, &list);
     for (size_t i = 0; i < count; i++) {
         const entry key = { .material = list[i] };
         entry *found = bsearch(&key, all->items, all->count, sizeof key, by_address);
-        if (found && found->met == 0)
-            found->met = ++all->met;
+        if (found && found->order == 0)
+            found->order = ++all->order;
     }
     for (size_t i = 0; i < glint_group_count(shape); i++)
-        meet(all, glint_group_child(shape, i));
+        visit_backgrounds(all, glint_group_child(shape, i));
 }
 
 // Pushes a list of the userdata that store patterns, and the entries of their materials.
@@ -272,14 +272,14 @@ void glintL_trace_scene(lua_State *L, const glint_scene *scene)
     if (all->count > 0) {
         qsort(all->items, all->count, sizeof *all->items, by_address);
         for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
-            meet(all, glint_scene_shape_at(scene, i));
+            visit_backgrounds(all, glint_scene_shape_at(scene, i));
         qsort(all->items, all->count, sizeof *all->items, by_turn);
     }
     lua_newtable(L); // the results of patterns
     for (size_t i = 0; i < all->count; i++) {
-        if (all->items[i].met == 0)
+        if (all->items[i].order == 0)
             continue;
-        lua_rawgeti(L, top + 1, all->items[i].place);
+        lua_rawgeti(L, top + 1, all->items[i].position);
         trace_object(L, top + 4, GLINTL_MATERIAL, top + 3);
         lua_settop(L, top + 3);
     }

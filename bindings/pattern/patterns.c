@@ -12,7 +12,7 @@ static const luaL_Reg METHODS[] = {
 };
 
 const glintL_tracing glintL_patterns = {
-    .place = glintL_traced_place,
+    .place = glintL_traced_position,
     .is_source = glintL_is_source,
     .refuse = glintL_refuse_within_trace,
     .keep = glintL_keep_source,

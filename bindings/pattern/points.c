@@ -34,7 +34,7 @@ static void make_direction(uint64_t *state, double v[3])
 }
 
 // Chooses a point, usually anywhere in -20 .. 20. Some points are near the origin, at whole numbers, and at 0.
-static void make_place(uint64_t *state, int number, double p[3])
+static void make_position(uint64_t *state, int number, double p[3])
 {
     for (int i = 0; i < 3; i++) {
         p[i] = between(state, -20, 20);
@@ -49,8 +49,8 @@ static void make_place(uint64_t *state, int number, double p[3])
 
 static void make_inputs(uint64_t *state, int number, double in[GLINT_INPUT_COUNT])
 {
-    make_place(state, number, &in[GLINT_INPUT_P_X]);
-    make_place(state, number, &in[GLINT_INPUT_WORLD_X]);
+    make_position(state, number, &in[GLINT_INPUT_P_X]);
+    make_position(state, number, &in[GLINT_INPUT_WORLD_X]);
     make_direction(state, &in[GLINT_INPUT_N_X]);
     make_direction(state, &in[GLINT_INPUT_V_X]);
     make_direction(state, &in[GLINT_INPUT_L_X]);

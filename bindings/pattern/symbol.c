@@ -12,11 +12,11 @@ static glintL_term whole_power(lua_State *L, glintL_term base, int exponent)
 {
     glintL_term power = glintL_number_term(1);
     bool has_power = false;
-    for (int left = exponent; left > 0; left >>= 1) {
-        if (left & 1)
+    for (int bits = exponent; bits > 0; bits >>= 1) {
+        if (bits & 1)
             power = has_power ? glintL_apply2(L, GLINT_OP_MUL, power, base) : base;
-        has_power = has_power || left & 1;
-        if (left > 1)
+        has_power = has_power || bits & 1;
+        if (bits > 1)
             base = glintL_apply2(L, GLINT_OP_MUL, base, base);
     }
     return power;

@@ -251,7 +251,7 @@ glintL_term glintL_read_term(lua_State *L, int index, const char *path)
     return operand.at[0];
 }
 
-int glintL_read_place(lua_State *L, int index, const char *path, glintL_term out[3])
+int glintL_read_position(lua_State *L, int index, const char *path, glintL_term out[3])
 {
     glintL_operand operand;
     glintL_read_operand(L, index, path, &operand);

@@ -131,13 +131,13 @@ void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glin
 static int look_up(lua_State *L)
 {
     const glintL_pattern *pattern = lua_touserdata(L, 1);
-    glintL_operand place;
+    glintL_operand uv;
     glintL_term in[3] = { [2] = glintL_number_term(0) }, out[4];
-    glintL_read_operand(L, 2, "texture: u", &place);
+    glintL_read_operand(L, 2, "texture: u", &uv);
     int next = 3;
-    in[0] = place.at[0];
-    in[1] = place.at[1];
-    if (!place.is_vector)
+    in[0] = uv.at[0];
+    in[1] = uv.at[1];
+    if (!uv.is_vector)
         in[1] = glintL_read_term(L, next++, "texture: v");
     if (!lua_isnoneornil(L, next))
         in[2] = glintL_read_term(L, next, "texture: footprint");

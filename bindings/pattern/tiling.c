@@ -22,10 +22,10 @@ static glintL_term choose(lua_State *L, glintL_term width, glintL_term mean, gli
 // that no digits are lost far from the origin. Rounding may leave 0 .. 1 slightly, so the result is clamped.
 static glintL_term mean_of_wave(lua_State *L, glintL_term x, glintL_term share, glintL_term width)
 {
-    const glintL_term place = glintL_apply1(L, GLINT_OP_FRACT, x), half = mul(L, number(0.5), width);
+    const glintL_term position = glintL_apply1(L, GLINT_OP_FRACT, x), half = mul(L, number(0.5), width);
     glintL_term integral[2];
     for (int end = 0; end < 2; end++) {
-        const glintL_term at = end ? add(L, place, half) : sub(L, place, half);
+        const glintL_term at = end ? add(L, position, half) : sub(L, position, half);
         const glintL_term part = glintL_apply2(L, GLINT_OP_MIN, glintL_apply1(L, GLINT_OP_FRACT, at), share);
         integral[end] = add(L, mul(L, glintL_apply1(L, GLINT_OP_FLOOR, at), share), part);
     }
@@ -64,7 +64,7 @@ static int checker(lua_State *L)
 {
     glintL_term p[3];
     glintL_operand width;
-    const int end = glintL_read_place(L, 1, "checker", p);
+    const int end = glintL_read_position(L, 1, "checker", p);
     if (lua_gettop(L) > end)
         return glintL_error(L, "checker: a vector and a footprint expected, got more");
     if (lua_isnoneornil(L, end)) {
@@ -106,7 +106,7 @@ static glintL_term band(lua_State *L, glintL_term x, glintL_term share)
 static int brick(lua_State *L)
 {
     glintL_term p[3], mortar = number(0.1);
-    glintL_read_place(L, 1, "brick", p);
+    glintL_read_position(L, 1, "brick", p);
     if (!lua_istable(L, 1) && !glintL_to_vector(L, 1))
         return glintL_error(L, "brick: a vector expected as the first argument: brick(p, mortar, footprint)");
     if (lua_gettop(L) > 3)

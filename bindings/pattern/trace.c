@@ -45,14 +45,14 @@ static int close_traced(lua_State *L)
 
 // ---- Messages ----
 
-const char *glintL_traced_place(lua_State *L, lua_CFunction reached)
+const char *glintL_traced_position(lua_State *L, lua_CFunction reached)
 {
     const glintL_trace *trace = reached == glintL_call_function ? glintL_current_trace(L) : NULL;
     return trace ? trace->place : NULL;
 }
 
 // Returns whether a message begins with a position such as "file:12: ".
-static bool has_place(const char *text)
+static bool has_position(const char *text)
 {
     for (const char *colon = strchr(text, ':'); colon; colon = strchr(colon + 1, ':')) {
         const size_t digits = strspn(colon + 1, "0123456789");
@@ -96,7 +96,7 @@ static int explain(lua_State *L)
         lua_settop(L, 1);
         return 1;
     }
-    lua_pushfstring(L, "%s%s: %s", has_place(text) ? "" : trace->place, text, cure);
+    lua_pushfstring(L, "%s%s: %s", has_position(text) ? "" : trace->place, text, cure);
     return 1;
 }
 
@@ -153,7 +153,7 @@ int glintL_call_function(lua_State *L)
 }
 
 // Stores the position of the function of the pattern at `index`; a texture has none.
-static void set_place(lua_State *L, int index, glintL_trace *trace)
+static void set_position(lua_State *L, int index, glintL_trace *trace)
 {
     lua_Debug info;
     if (lua_getiuservalue(L, index, 1) != LUA_TFUNCTION) {
@@ -170,7 +170,7 @@ static session *push_session(lua_State *L, int index)
     session *s = lua_newuserdatauv(L, sizeof *s, 0);
     *s = (session) { .trace = { .is_shader = pattern->kind == GLINT_PROGRAM_SHADER } };
     luaL_setmetatable(L, SESSION);
-    set_place(L, index, &s->trace);
+    set_position(L, index, &s->trace);
     return s;
 }
 
@@ -435,11 +435,11 @@ glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background)
     return traced;
 }
 
-const char *glintL_push_pattern_place(lua_State *L, int index)
+const char *glintL_push_pattern_position(lua_State *L, int index)
 {
     glintL_trace trace = { .is_shader = false };
     if (glintL_to_pattern(L, index))
-        set_place(L, lua_absindex(L, index), &trace);
+        set_position(L, lua_absindex(L, index), &trace);
     return lua_pushstring(L, trace.place);
 }
 

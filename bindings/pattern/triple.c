@@ -162,21 +162,21 @@ static const luaL_Reg METHODS[] = {
 static int read_field(lua_State *L)
 {
     static const char letters[] = "rgbuv", places[] = "01201";
-    int place = -1;
+    int index = -1;
     if (lua_isinteger(L, 2)) {
         const lua_Integer i = lua_tointeger(L, 2);
-        place = i >= 1 && i <= 3 ? (int)i - 1 : -1;
-        if (place < 0)
+        index = i >= 1 && i <= 3 ? (int)i - 1 : -1;
+        if (index < 0)
             return 0; // ends ipairs
     } else if (lua_type(L, 2) != LUA_TSTRING) {
         return glintL_bad_key(L, "vector", 2);
     } else {
         const char *name = lua_tostring(L, 2);
         const char *letter = *name && !name[1] ? strchr(letters, *name) : NULL;
-        place = letter ? places[letter - letters] - '0' : -1;
+        index = letter ? places[letter - letters] - '0' : -1;
     }
-    if (place >= 0) {
-        lua_pushstring(L, &"x\0y\0z"[2 * place]);
+    if (index >= 0) {
+        lua_pushstring(L, &"x\0y\0z"[2 * index]);
         lua_rawget(L, 1);
         return 1;
     }

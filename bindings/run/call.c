@@ -251,7 +251,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
         desc.passes = desc.codes ? 0 : 1u << GLINT_PASS_BEAUTY;
         desc.derivative_count = 0;
         desc.light_passes = NULL;
-        if (glint_plan_create(scene, &desc, &run->kept_neighbour, &error))
+        if (glint_plan_create(scene, &desc, &run->retained_neighbour, &error))
             return glintL_error(L, PATH "%s", error.message);
     }
     if (run->mode == GLINTL_MODE_EXPLAIN || !is_selected(run)) {

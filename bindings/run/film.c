@@ -13,15 +13,15 @@
 // Returns "PATH.frames/%04d.png", with each '%' of the path doubled; the caller frees it. NULL: out of memory.
 static char *pattern_of(const char *path)
 {
-    size_t used = 0, room = 2 * strlen(path) + 32;
-    char *out = malloc(room);
+    size_t used = 0, capacity = 2 * strlen(path) + 32;
+    char *out = malloc(capacity);
     for (; out && *path; path++) {
         if (*path == '%')
             out[used++] = '%';
         out[used++] = *path;
     }
     if (out)
-        snprintf(out + used, room - used, ".frames/%%04d.png");
+        snprintf(out + used, capacity - used, ".frames/%%04d.png");
     return out;
 }
 
@@ -115,22 +115,22 @@ void glintL_film_take(const glintL_run *run, glintL_naming *naming)
 
 static bool grow(glintL_film *film)
 {
-    const size_t room = film->room ? 2 * film->room : 64;
-    char **files = realloc(film->files, room * sizeof *files);
+    const size_t capacity = film->capacity ? 2 * film->capacity : 64;
+    char **files = realloc(film->files, capacity * sizeof *files);
     if (files)
         film->files = files;
-    int64_t *numbers = files ? realloc(film->numbers, room * sizeof *numbers) : NULL;
+    int64_t *numbers = files ? realloc(film->numbers, capacity * sizeof *numbers) : NULL;
     if (!numbers)
         return false;
     film->numbers = numbers;
-    film->room = room;
+    film->capacity = capacity;
     return true;
 }
 
 bool glintL_film_add(glintL_film *film, int64_t number, const char *file)
 {
     size_t at = film->count;
-    char *copy = film->count < film->room || grow(film) ? strdup(file) : NULL;
+    char *copy = film->count < film->capacity || grow(film) ? strdup(file) : NULL;
     if (!copy)
         return false;
     for (; at > 0 && film->numbers[at - 1] > number; at--) {

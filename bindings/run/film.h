@@ -15,7 +15,7 @@ typedef struct glintL_film {
     double fps;
     char **files; ///< owned, in order
     int64_t *numbers; ///< owned; numbers of the frames, if glintL_film_add adds them
-    size_t count, room;
+    size_t count, capacity;
 } glintL_film;
 
 /// Opens the film at `path`, unless `path` is not a film. False: the message says what is wrong.

@@ -113,15 +113,15 @@ static int spawn(encoder *e, int input, const char *target)
 static int start(encoder *e, const char *target)
 {
     int ends[2];
-    size_t room = strlen(target) + 8;
-    char *url = malloc(room); // so that a ':' in a name is not read as a protocol
+    size_t capacity = strlen(target) + 8;
+    char *url = malloc(capacity); // so that a ':' in a name is not read as a protocol
     e->said = tmpfile();
     if (!url || !e->said || !glintL_socket_pair(ends)) {
         int code = url && errno ? errno : ENOMEM;
         free(url);
         return code;
     }
-    snprintf(url, room, "file:%s", target);
+    snprintf(url, capacity, "file:%s", target);
     int code = spawn(e, ends[1], url);
     free(url);
     close(ends[1]);
@@ -215,13 +215,13 @@ static int wait_for(const encoder *e, bool stop)
 }
 
 // Returns the end of ffmpeg's output, on one line.
-static void read_said(FILE *said, char *out, size_t room)
+static void read_said(FILE *said, char *out, size_t capacity)
 {
     long size = ftell(said);
     fseek(said, 0, SEEK_END);
     size = ftell(said);
-    fseek(said, size > (long)room - 1 ? size - (long)room + 1 : 0, SEEK_SET);
-    size_t used = fread(out, 1, room - 1, said);
+    fseek(said, size > (long)capacity - 1 ? size - (long)capacity + 1 : 0, SEEK_SET);
+    size_t used = fread(out, 1, capacity - 1, said);
     while (used > 0 && (out[used - 1] == '\n' || out[used - 1] == ' '))
         used--;
     out[used] = '\0';

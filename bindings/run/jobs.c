@@ -74,7 +74,7 @@ int64_t glintL_jobs_total(lua_State *L, int index)
 
 // The frames to render: of the selected frames, those at positions from .. to.
 typedef struct part {
-    int64_t from, to, place; // place: position of the last frame passed
+    int64_t from, to, position; // position: of the last frame passed
 } part;
 
 static part open_part(glintL_run *run, int64_t frames)
@@ -82,7 +82,7 @@ static part open_part(glintL_run *run, int64_t frames)
     part p;
     const int64_t first = run->count + 1, last = run->count + frames;
     glintL_selection_part(&run->request.selection, first, last, &p.from, &p.to);
-    p.place = glintL_selection_count(&run->request.selection, first, run->count);
+    p.position = glintL_selection_count(&run->request.selection, first, run->count);
     run->total = last;
     run->todo += p.to - p.from + 1; // the part may be empty: to = from - 1
     return p;
@@ -93,8 +93,8 @@ static bool takes(const glintL_run *run, part *p, int64_t number)
 {
     if (!glintL_selection_has(&run->request.selection, number))
         return false;
-    p->place++;
-    return p->place >= p->from && p->place <= p->to;
+    p->position++;
+    return p->position >= p->from && p->position <= p->to;
 }
 
 // Returns whether the run renders several frames of the current job, whose first frame has that number, and may render
@@ -104,7 +104,8 @@ static bool may_reorder(const glintL_walk *walk, int64_t first, const part *p)
     const int64_t last = first + walk->job->frames - 1;
     const int64_t count = glintL_selection_count(&walk->run->request.selection, first, last);
     const char *pattern = walk->naming.pattern;
-    return count > 2 && p->place < p->to && p->place + count >= p->from && !(pattern && glintL_name_is_special(pattern));
+    return count > 2 && p->position < p->to && p->position + count >= p->from &&
+           !(pattern && glintL_name_is_special(pattern));
 }
 
 static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
@@ -121,8 +122,8 @@ static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
         if (good)
             glintL_order_find(&order, glintL_walk_probe, walk);
     }
-    for (int64_t place = 0; place < walk->job->frames && good; place++) {
-        const int64_t n = glintL_order_frame(&order, place), number = first + n - 1;
+    for (int64_t position = 0; position < walk->job->frames && good; position++) {
+        const int64_t n = glintL_order_frame(&order, position), number = first + n - 1;
         if (!takes(run, p, number))
             continue;
         good = !run->interrupted && glintL_walk_settle(walk, i, first) && glintL_walk_render(walk, n, number);
@@ -334,7 +335,7 @@ static void explain_frame(glintL_walk *walk, int64_t n)
         glintL_run_keep_scene(run, glintL_walk_scene(walk), &walk->render);
     }
     if (next) {
-        run->kept_neighbour = next->plan;
+        run->retained_neighbour = next->plan;
         next->plan = NULL;
     }
     glintL_work_destroy(work);

@@ -11,22 +11,22 @@
 
 #define DIGITS_MAX 18 // digits of a number, at most
 
-// A place for the number in a pattern, which begins with '%' or '#'.
-typedef struct place {
+// A placeholder for the number in a pattern, which begins with '%' or '#'.
+typedef struct placeholder {
     size_t length; // in the pattern; 0: invalid
     int digits; // -1: an escaped '%' or '#'
-} place;
+} placeholder;
 
-static place read_place(const char *text)
+static placeholder read_placeholder(const char *text)
 {
-    place found = { 0, 0 };
+    placeholder found = { 0, 0 };
     if (*text == '#') {
         found.length = strspn(text, "#");
         found.digits = found.length <= DIGITS_MAX ? (int)found.length : DIGITS_MAX;
         return found;
     }
     if (text[1] == '%' || text[1] == '#')
-        return (place) { 2, -1 };
+        return (placeholder) { 2, -1 };
     size_t figures = strspn(text + 1, "0123456789");
     if (text[1 + figures] != 'd' || figures > 3 || (figures > 0 && text[1] != '0'))
         return found;
@@ -41,9 +41,9 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-// Returns whether `at` is a place for the number. "%d" may be anywhere, "#" only in the last part of the path, because
-// folders have names such as "shot#3".
-static bool is_place(const char *pattern, const char *at)
+// Returns whether `at` is a placeholder for the number. "%d" may be anywhere, "#" only in the last part of the path,
+// because folders have names such as "shot#3".
+static bool is_placeholder(const char *pattern, const char *at)
 {
     return *at == '%' || (*at == '#' && at >= base_name(pattern));
 }
@@ -115,7 +115,7 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
     if (strcmp(pattern, "none") == 0)
         return true;
     for (const char *at = pattern; *at && !wrong;) {
-        size_t length = is_place(pattern, at) ? read_place(at).length : 1;
+        size_t length = is_placeholder(pattern, at) ? read_placeholder(at).length : 1;
         if (length == 0)
             wrong = "a place for the frame number such as %04d or ####, and %% for a per cent sign";
         at += length;
@@ -137,7 +137,7 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
 bool glintL_name_has_number(const char *pattern)
 {
     for (const char *at = pattern; *at;) {
-        place found = is_place(pattern, at) ? read_place(at) : (place) { 1, -1 };
+        placeholder found = is_placeholder(pattern, at) ? read_placeholder(at) : (placeholder) { 1, -1 };
         if (found.digits >= 0)
             return true;
         at += found.length ? found.length : 1;
@@ -150,9 +150,9 @@ static bool fill(const glintL_naming *naming, int64_t number, char path[GLINTL_P
 {
     size_t used = 0;
     for (const char *at = naming->pattern; *at && used < GLINTL_PATH_SIZE - 1;) {
-        place found = { 1, -1 };
-        if (!naming->is_plain && is_place(naming->pattern, at))
-            found = read_place(at);
+        placeholder found = { 1, -1 };
+        if (!naming->is_plain && is_placeholder(naming->pattern, at))
+            found = read_placeholder(at);
         if (found.digits >= 0)
             used += (size_t)snprintf(path + used, GLINTL_PATH_SIZE - used, "%0*" PRId64, found.digits, number);
         else

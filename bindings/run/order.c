@@ -45,16 +45,17 @@ bool glintL_order_is_grid(const glintL_order *order)
     return several > 1;
 }
 
-int64_t glintL_order_frame(const glintL_order *order, int64_t place)
+int64_t glintL_order_frame(const glintL_order *order, int64_t position)
 {
     if (!order->is_found)
-        return place + 1;
+        return position + 1;
     int64_t n = 1, below = order->frames; // below: frames of the digits not yet read, from the slowest
     bool back = false; // the slower digits form an odd number, so this digit runs backwards
     for (int i = order->axis_count - 1; i >= 0; i--) {
         const glintL_order_axis *axis = &order->axes[order->by_work[i]];
         below /= axis->count;
-        const int64_t digit = place / below, step = back && !axis->is_forward ? axis->count - 1 - digit % axis->count : digit % axis->count;
+        const int64_t digit = position / below,
+                      step = back && !axis->is_forward ? axis->count - 1 - digit % axis->count : digit % axis->count;
         n += step * axis->stride;
         back = digit % 2 != 0;
     }

@@ -38,6 +38,6 @@ typedef glint_plan *glintL_plan_frame(void *context, int64_t n);
 /// unchanged.
 bool glintL_order_find(glintL_order *order, glintL_plan_frame *plan_frame, void *context);
 /// Returns the frame, from 1, that is rendered at a position, from 0.
-int64_t glintL_order_frame(const glintL_order *order, int64_t place);
+int64_t glintL_order_frame(const glintL_order *order, int64_t position);
 
 #endif

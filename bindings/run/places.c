@@ -31,27 +31,27 @@ static uint64_t hash_picture(const glintL_file *file, int64_t index)
 }
 
 // Returns the entry of a path, or the free entry for it. The table always has free entries.
-static glintL_place *find(glintL_place *table, size_t room, uint64_t path)
+static glintL_written *find(glintL_written *table, size_t capacity, uint64_t path)
 {
-    size_t at = path % room;
+    size_t at = path % capacity;
     while (table[at].path && table[at].path != path)
-        at = (at + 1) % room;
+        at = (at + 1) % capacity;
     return &table[at];
 }
 
 // Enlarges the table. False: out of memory.
 static bool grow(glintL_run *run)
 {
-    size_t room = run->place_room ? 2 * run->place_room : 64;
-    glintL_place *table = calloc(room, sizeof *table);
+    size_t capacity = run->written_capacity ? 2 * run->written_capacity : 64;
+    glintL_written *table = calloc(capacity, sizeof *table);
     if (!table)
         return false;
-    for (size_t i = 0; i < run->place_room; i++)
-        if (run->places[i].path)
-            *find(table, room, run->places[i].path) = run->places[i];
-    free(run->places);
-    run->places = table;
-    run->place_room = room;
+    for (size_t i = 0; i < run->written_capacity; i++)
+        if (run->written[i].path)
+            *find(table, capacity, run->written[i].path) = run->written[i];
+    free(run->written);
+    run->written = table;
+    run->written_capacity = capacity;
     return true;
 }
 
@@ -71,15 +71,15 @@ static bool replaces(glintL_run *run, const char *name, uint64_t picture, int64_
 {
     if (glintL_name_is_special(name))
         return false;
-    if (2 * run->place_count >= run->place_room && !grow(run))
+    if (2 * run->written_count >= run->written_capacity && !grow(run))
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, index, "out of memory");
     const uint64_t path = hash_path(name);
-    glintL_place *place = find(run->places, run->place_room, path);
-    *first = place->index;
-    if (place->path)
-        return place->picture != picture;
-    *place = (glintL_place) { path, picture, index };
-    run->place_count++;
+    glintL_written *entry = find(run->written, run->written_capacity, path);
+    *first = entry->index;
+    if (entry->path)
+        return entry->picture != picture;
+    *entry = (glintL_written) { path, picture, index };
+    run->written_count++;
     return false;
 }
 
@@ -97,7 +97,7 @@ bool glintL_places_add(glintL_run *run, const glintL_work *work)
     return run->exit_code == 0;
 }
 
-bool glintL_places_note(glintL_run *run, const char *what, const char *path, int64_t number)
+bool glintL_written_note(glintL_run *run, const char *what, const char *path, int64_t number)
 {
     int64_t first = 0;
     if (replaces(run, path, (uint64_t)number, number, &first))
@@ -108,7 +108,7 @@ bool glintL_places_note(glintL_run *run, const char *what, const char *path, int
 
 void glintL_places_forget(glintL_run *run)
 {
-    free(run->places);
-    run->places = NULL;
-    run->place_count = run->place_room = 0;
+    free(run->written);
+    run->written = NULL;
+    run->written_count = run->written_capacity = 0;
 }

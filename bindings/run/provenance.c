@@ -17,14 +17,14 @@ static void add(glintL_provenance *out, const char *keyword, const char *value)
         out->text[out->count++] = (glint_text) { keyword, value };
 }
 
-static void list_options(const glintL_render *render, char *out, size_t room)
+static void list_options(const glintL_render *render, char *out, size_t capacity)
 {
     char value[64];
     size_t used = 0;
     out[0] = '\0';
-    for (int field = 0; field < GLINTL_RENDER_FIELDS && used < room; field++)
+    for (int field = 0; field < GLINTL_RENDER_FIELDS && used < capacity; field++)
         if (glintL_render_spell(render, field, value))
-            used += (size_t)snprintf(out + used, room - used, "%s%s=%s", used ? "\n" : "",
+            used += (size_t)snprintf(out + used, capacity - used, "%s%s=%s", used ? "\n" : "",
                                      glintL_render_fields[field].name, value);
 }
 
@@ -32,17 +32,17 @@ static void list_options(const glintL_render *render, char *out, size_t room)
 static bool join_sweeps(glintL_provenance *out, const glintL_run *run, const glintL_work *work)
 {
     const glintL_request *request = &run->request;
-    size_t room = 1 + (work->sweep ? strlen(work->sweep) : 0), used = 0;
+    size_t capacity = 1 + (work->sweep ? strlen(work->sweep) : 0), used = 0;
     for (size_t i = request->set_count - request->swept_count; i < request->set_count; i++)
-        room += strlen(request->sets[i].name) + strlen(request->sets[i].text) + 2;
-    if (room == 1)
+        capacity += strlen(request->sets[i].name) + strlen(request->sets[i].text) + 2;
+    if (capacity == 1)
         return true;
-    out->sweep = malloc(room);
+    out->sweep = malloc(capacity);
     if (!out->sweep)
         return false;
-    used = (size_t)snprintf(out->sweep, room, "%s", work->sweep ? work->sweep : "");
+    used = (size_t)snprintf(out->sweep, capacity, "%s", work->sweep ? work->sweep : "");
     for (size_t i = request->set_count - request->swept_count; i < request->set_count; i++)
-        used += (size_t)snprintf(out->sweep + used, room - used, "%s%s=%s", used ? "\n" : "", request->sets[i].name,
+        used += (size_t)snprintf(out->sweep + used, capacity - used, "%s%s=%s", used ? "\n" : "", request->sets[i].name,
                                  request->sets[i].text);
     return true;
 }

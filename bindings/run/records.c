@@ -37,8 +37,8 @@ void glintL_run_destroy(glintL_run *run)
     glint_renderer_destroy(run->renderer);
     glint_plan_destroy(run->explain_plan);
     free(run->explain_order);
-    glint_plan_destroy(run->kept_neighbour);
-    glint_scene_release(run->kept_scene);
+    glint_plan_destroy(run->retained_neighbour);
+    glint_scene_release(run->retained_scene);
     glintL_work_destroy(run->deferred);
     while (run->head) {
         glintL_record *next = run->head->next;
@@ -89,13 +89,13 @@ void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_ren
 {
     if (!run->keeps_scene)
         return;
-    run->kept_scene = glint_scene_retain(scene);
-    run->kept_render = *render;
-    run->kept_render.desc.derivatives = NULL; // they belong to the scene's next frame by now
-    run->kept_render.desc.derivative_count = 0;
-    run->kept_render.derivative_count = 0;
-    run->kept_render.desc.light_passes = NULL; // the study measures the picture without them
-    run->kept_render.light_passes[0] = '\0';
+    run->retained_scene = glint_scene_retain(scene);
+    run->retained_render = *render;
+    run->retained_render.desc.derivatives = NULL; // they belong to the scene's next frame by now
+    run->retained_render.desc.derivative_count = 0;
+    run->retained_render.derivative_count = 0;
+    run->retained_render.desc.light_passes = NULL; // the study measures the picture without them
+    run->retained_render.light_passes[0] = '\0';
 }
 
 // ---- The run of plain Lua, which the state owns ----

@@ -78,18 +78,21 @@ int glintL_render_find(const char *name)
 
 const char *const *glintL_render_choices(int field) { return field >= 0 ? details[field].names : NULL; }
 
-static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == REAL || what->sort == BITS; }
+static bool is_number(const detail *option)
+{
+    return option->sort == WHOLE || option->sort == REAL || option->sort == BITS;
+}
 
 // Returns the allowed values, for messages.
-static void describe(const detail *what, char out[256])
+static void describe(const detail *option, char out[256])
 {
     size_t used = 0;
-    switch (what->sort) {
+    switch (option->sort) {
     case WHOLE:
-        snprintf(out, 256, "whole number %.17g .. %.17g", what->min, what->max);
+        snprintf(out, 256, "whole number %.17g .. %.17g", option->min, option->max);
         break;
     case REAL:
-        snprintf(out, 256, "number %.17g .. %.17g", what->min, what->max);
+        snprintf(out, 256, "number %.17g .. %.17g", option->min, option->max);
         break;
     case BITS:
         snprintf(out, 256, "8 or 16");
@@ -99,9 +102,9 @@ static void describe(const detail *what, char out[256])
         break;
     case CHOICE:
     case COLORS:
-        for (const char *const *name = what->names; *name; name++)
+        for (const char *const *name = option->names; *name; name++)
             used += (size_t)snprintf(out + used, 256 - used, "%s\"%s\"",
-                                     name == what->names ? "" : (name[1] ? ", " : " or "), *name);
+                                     name == option->names ? "" : (name[1] ? ", " : " or "), *name);
         break;
     case OUTPUT:
         snprintf(out, 256, "file name");
@@ -118,19 +121,19 @@ static void describe(const detail *what, char out[256])
 }
 
 // Stores a number. False: it is not allowed, or the field takes no number.
-static bool set_number(glintL_render *render, const detail *what, double value)
+static bool set_number(glintL_render *render, const detail *option, double value)
 {
-    char *field = (char *)render + what->offset;
+    char *field = (char *)render + option->offset;
     int bits = value == 16 ? 16 : 8;
-    switch (what->sort) {
+    switch (option->sort) {
     case WHOLE:
         // Within the limits the conversion is exact. NaN fails the comparison.
-        if (!(value >= what->min && value <= what->max) || value != (double)(int64_t)value)
+        if (!(value >= option->min && value <= option->max) || value != (double)(int64_t)value)
             return false;
         memcpy(field, &value, sizeof value);
         return true;
     case REAL:
-        if (!(value >= what->min && value <= what->max))
+        if (!(value >= option->min && value <= option->max))
             return false;
         memcpy(field, &value, sizeof value);
         return true;
@@ -142,11 +145,11 @@ static bool set_number(glintL_render *render, const detail *what, double value)
     }
 }
 
-static bool set_choice(glintL_render *render, const detail *what, const char *text)
+static bool set_choice(glintL_render *render, const detail *option, const char *text)
 {
-    for (unsigned value = 0; what->names[value]; value++) {
-        if (strcmp(what->names[value], text) == 0) {
-            memcpy((char *)render + what->offset, &value, sizeof value); // enums are stored as int by GCC and Clang
+    for (unsigned value = 0; option->names[value]; value++) {
+        if (strcmp(option->names[value], text) == 0) {
+            memcpy((char *)render + option->offset, &value, sizeof value); // enums are stored as int by GCC and Clang
             return true;
         }
     }
@@ -154,32 +157,32 @@ static bool set_choice(glintL_render *render, const detail *what, const char *te
 }
 
 // Reads "viridis" or "viridis:1:9". False: the name is wrong, or the range is, and then `message` is written.
-static bool set_colors(glintL_render *render, const detail *what, const char *text, char message[GLINTL_MESSAGE_SIZE])
+static bool set_colors(glintL_render *render, const detail *option, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
     char name[32];
     const size_t length = strcspn(text, ":");
     glintL_render read = *render;
     *message = '\0';
     snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1, text);
-    if (!set_choice(&read, what, name) || !glintL_read_range(text + length, read.range, message))
+    if (!set_choice(&read, option, name) || !glintL_read_range(text + length, read.range, message))
         return false;
     *render = read;
     return true;
 }
 
 // Returns the nearest choice; NULL: none is near.
-static const char *nearest_choice(const detail *what, const char *text)
+static const char *nearest_choice(const detail *option, const char *text)
 {
     const char *near = NULL;
-    for (const char *const *name = what->names; *name; name++)
+    for (const char *const *name = option->names; *name; name++)
         near = glintL_nearer(text, near, *name);
     return near;
 }
 
-static bool set_flag(glintL_render *render, const detail *what, const char *text)
+static bool set_flag(glintL_render *render, const detail *option, const char *text)
 {
     const bool value = strcmp(text, "true") == 0;
-    memcpy((char *)render + what->offset, &value, sizeof value);
+    memcpy((char *)render + option->offset, &value, sizeof value);
     return value || strcmp(text, "false") == 0;
 }
 
@@ -297,30 +300,30 @@ static bool set_region(double region[4], const char *text)
 }
 
 // Sets a field whose value is a word. False: `message` is written.
-static bool set_word(glintL_render *render, const detail *what, const char *text, char message[GLINTL_MESSAGE_SIZE])
+static bool set_word(glintL_render *render, const detail *option, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
     char allowed[256];
     bool good = false;
-    if (what->sort == OUTPUT) {
+    if (option->sort == OUTPUT) {
         if (!glintL_name_check(text, message))
             return false;
         snprintf(render->output, sizeof render->output, "%s", text);
         return true;
     }
-    if (what->sort == CHOICE)
-        good = set_choice(render, what, text);
-    else if (what->sort == FLAG)
-        good = set_flag(render, what, text);
-    else if (what->sort == REGION)
+    if (option->sort == CHOICE)
+        good = set_choice(render, option, text);
+    else if (option->sort == FLAG)
+        good = set_flag(render, option, text);
+    else if (option->sort == REGION)
         good = set_region(render->desc.region, text);
-    else if (what->sort == PASSES)
+    else if (option->sort == PASSES)
         return read_passes(text, render, message);
-    else if (what->sort == COLORS)
-        good = set_colors(render, what, text, message);
-    if (good || (what->sort == COLORS && *message))
+    else if (option->sort == COLORS)
+        good = set_colors(render, option, text, message);
+    if (good || (option->sort == COLORS && *message))
         return good;
-    describe(what, allowed);
-    const char *near = what->names ? nearest_choice(what, text) : NULL;
+    describe(option, allowed);
+    const char *near = option->names ? nearest_choice(option, text) : NULL;
     snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'%s%s%s", allowed, text, near ? "; did you mean '" : "",
              near ? near : "", near ? "'?" : "");
     return false;
@@ -328,14 +331,14 @@ static bool set_word(glintL_render *render, const detail *what, const char *text
 
 bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
-    const detail *what = &details[field];
+    const detail *option = &details[field];
     char allowed[256], *end;
-    if (!is_number(what))
-        return set_word(render, what, text, message);
+    if (!is_number(option))
+        return set_word(render, option, text, message);
     double value = strtod(text, &end);
-    if (end != text && *end == '\0' && set_number(render, what, value))
+    if (end != text && *end == '\0' && set_number(render, option, value))
         return true;
-    describe(what, allowed);
+    describe(option, allowed);
     snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
     return false;
 }
@@ -397,27 +400,27 @@ static void read_region(lua_State *L, int index, const char *path, int field, gl
 
 void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render)
 {
-    const detail *what = &details[field];
+    const detail *option = &details[field];
     char message[GLINTL_MESSAGE_SIZE];
     size_t length;
     index = lua_absindex(L, index);
     luaL_checkstack(L, 6, "field");
-    if (is_number(what)) {
-        if (lua_type(L, index) != LUA_TNUMBER || !set_number(render, what, lua_tonumber(L, index)))
+    if (is_number(option)) {
+        if (lua_type(L, index) != LUA_TNUMBER || !set_number(render, option, lua_tonumber(L, index)))
             refuse(L, index, path, field);
         return;
     }
-    if (what->sort == FLAG) {
+    if (option->sort == FLAG) {
         if (!lua_isboolean(L, index))
             refuse(L, index, path, field);
-        set_flag(render, what, lua_toboolean(L, index) ? "true" : "false");
+        set_flag(render, option, lua_toboolean(L, index) ? "true" : "false");
         return;
     }
-    if (what->sort == PASSES && lua_istable(L, index)) {
+    if (option->sort == PASSES && lua_istable(L, index)) {
         read_pass_list(L, index, path, field, render);
         return;
     }
-    if (what->sort == REGION && lua_istable(L, index)) {
+    if (option->sort == REGION && lua_istable(L, index)) {
         read_region(L, index, path, field, render);
         return;
     }
@@ -426,9 +429,9 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
     const char *text = lua_tolstring(L, index, &length);
     if (strlen(text) != length)
         refuse(L, index, path, field);
-    if (what->sort == OUTPUT && glintL_get_run(L)->request.is_untrusted && !glintL_name_is_plain(text, length))
+    if (option->sort == OUTPUT && glintL_get_run(L)->request.is_untrusted && !glintL_name_is_plain(text, length))
         glintL_error(L, "%s%s: " GLINTL_PLAIN_NAME " expected, got '%s'", path, glintL_render_fields[field].name, text);
-    if (!set_word(render, what, text, message))
+    if (!set_word(render, option, text, message))
         glintL_error(L, "%s%s: %s", path, glintL_render_fields[field].name, message);
 }
 
@@ -469,11 +472,11 @@ static void push_region(lua_State *L, const double region[4])
 
 bool glintL_render_spell(const glintL_render *render, int field, char out[64])
 {
-    const detail *what = &details[field];
-    const char *at = (const char *)render + what->offset;
+    const detail *option = &details[field];
+    const char *at = (const char *)render + option->offset;
     double number;
     unsigned value;
-    switch (what->sort) {
+    switch (option->sort) {
     case WHOLE:
     case REAL:
         memcpy(&number, at, sizeof number);
@@ -487,7 +490,7 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
         return true;
     case CHOICE:
         memcpy(&value, at, sizeof value);
-        snprintf(out, 64, "%s", what->names[value]);
+        snprintf(out, 64, "%s", option->names[value]);
         return true;
     case COLORS:
         glintL_spell_colormap(render->colormap, render->range, out);
@@ -503,12 +506,12 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
 
 void glintL_render_push(lua_State *L, int field, const glintL_render *render)
 {
-    const detail *what = &details[field];
-    const char *at = (const char *)render + what->offset;
+    const detail *option = &details[field];
+    const char *at = (const char *)render + option->offset;
     char spelt[64];
     double number;
     unsigned value;
-    switch (what->sort) {
+    switch (option->sort) {
     case WHOLE:
         memcpy(&number, at, sizeof number);
         lua_pushinteger(L, (lua_Integer)number);
@@ -525,7 +528,7 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
         break;
     case CHOICE:
         memcpy(&value, at, sizeof value);
-        lua_pushstring(L, what->names[value]);
+        lua_pushstring(L, option->names[value]);
         break;
     case COLORS:
         glintL_spell_colormap(render->colormap, render->range, spelt);

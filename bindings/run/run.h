@@ -224,7 +224,7 @@ typedef struct glintL_work {
 } glintL_work;
 
 /// work.c: returns "ambient", "d:lamp_x", "light:key".
-const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE]);
+const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char buffer[GLINTL_PASS_NAME_SIZE]);
 
 // ---- state.c, records.c ----
 
@@ -255,11 +255,11 @@ typedef struct glintL_moments {
 } glintL_moments;
 
 /// A file that the run has written, an entry of a hash table.
-typedef struct glintL_place {
+typedef struct glintL_written {
     uint64_t path; ///< hash; 0: a free entry
     uint64_t picture; ///< hash of the picture's key, or of the frame if it has none
     int64_t index; ///< number of the first frame that it was written for
-} glintL_place;
+} glintL_written;
 
 struct glintL_run {
     bool times_stages, counts_work;
@@ -273,9 +273,9 @@ struct glintL_run {
     glint_plan *explain_plan; ///< owned
     struct glintL_order *explain_order; ///< owned; of the sweep that contains the frame; NULL: no sweep
     bool keeps_scene; ///< of the explained frame; then these are set, too:
-    glint_scene *kept_scene; ///< owned; the scene at that frame
-    glintL_render kept_render;
-    glint_plan *kept_neighbour; ///< owned; the previous frame, or the second for the first; NULL: none
+    glint_scene *retained_scene; ///< owned; the scene at that frame
+    glintL_render retained_render;
+    glint_plan *retained_neighbour; ///< owned; the previous frame, or the second for the first; NULL: none
     glintL_moments moments; ///< receives the frame's scene at the times of open shutters, if `see` is not NULL
     char script[256]; ///< base name
     char source[33]; ///< see glintL_find_source; "": not computed yet
@@ -289,8 +289,8 @@ struct glintL_run {
     int64_t files_pending;
     glintL_work *deferred; ///< the first call, until it is known whether there is a second
     char *params_text; ///< owned; "name=value" lines
-    glintL_place *places; ///< owned
-    size_t place_count, place_room;
+    glintL_written *written; ///< owned
+    size_t written_count, written_capacity;
     struct glintL_film *films; ///< owned; made when all their frames exist
 
     int64_t count; ///< frames numbered so far
@@ -435,7 +435,7 @@ void glintL_warn_of_clipping(glintL_run *run);
 bool glintL_places_add(glintL_run *run, const glintL_work *work);
 /// The same for a file that the script saves, or for a sheet. number: of the last frame before it; after another frame,
 /// the file counts as another picture.
-bool glintL_places_note(glintL_run *run, const char *what, const char *path, int64_t number);
+bool glintL_written_note(glintL_run *run, const char *what, const char *path, int64_t number);
 void glintL_places_forget(glintL_run *run);
 
 // ---- source.c ----
@@ -521,7 +521,7 @@ void glintL_sweep_push_title(lua_State *L, int axes, lua_Integer i);
 /// Pushes the table name -> value for frame n of the sweep at `index`.
 void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
 /// Pushes the "name=value" lines for frame n of the sweep at `index`, one per axis.
-void glintL_sweep_push_place(lua_State *L, int index, int64_t n);
+void glintL_sweep_push_position(lua_State *L, int index, int64_t n);
 
 /// Makes a list of jobs from a script's result at `index` (a job, a scene, or a list of them). Pushes it and returns
 /// true, or pushes a message and returns false.

@@ -13,7 +13,7 @@ typedef struct glintL_sheet {
     const char *path; ///< .png or .html
     char *const *files; ///< the cells, row by row
     size_t count;
-    char *const *places; ///< "name=value" lines of each cell, its place on the axes; NULL: read from the file
+    char *const *positions; ///< "name=value" lines of each cell, its place on the axes; NULL: read from the file
     char *const *labels; ///< NULL: made from `label`
     const char *label; ///< with {name} for a value; "none"; NULL: every axis and its value
     const char *title; ///< NULL: none

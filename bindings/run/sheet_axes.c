@@ -61,8 +61,8 @@ static char *copy_value(const char *lines, const char *name, size_t name_length)
 
 static const char *lines_of(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, const char *keyword)
 {
-    if (sheet->places && strcmp(keyword, "glint:sweep") == 0)
-        return sheet->places[cell];
+    if (sheet->positions && strcmp(keyword, "glint:sweep") == 0)
+        return sheet->positions[cell];
     return glint_picture_text(axes->pictures[cell], keyword);
 }
 

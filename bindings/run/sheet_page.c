@@ -38,8 +38,8 @@ static void push_axis(lua_State *L, const glintL_axis *axis)
 
 static void push_content(lua_State *L, const void *context)
 {
-    const content *what = context;
-    const glintL_sheet *sheet = what->sheet;
+    const content *page_content = context;
+    const glintL_sheet *sheet = page_content->sheet;
     lua_newtable(L);
     lua_pushlstring(L, PAGE, sizeof PAGE);
     lua_setfield(L, -2, "page");
@@ -53,17 +53,17 @@ static void push_content(lua_State *L, const void *context)
     lua_setfield(L, -2, "difference");
     lua_pushnumber(L, sheet->gain > 0 ? sheet->gain : 8);
     lua_setfield(L, -2, "gain");
-    if (what->axes->is_grid) {
+    if (page_content->axes->is_grid) {
         lua_newtable(L);
-        for (size_t a = 0; a < what->axes->count; a++) {
-            push_axis(L, &what->axes->axis[a]);
+        for (size_t a = 0; a < page_content->axes->count; a++) {
+            push_axis(L, &page_content->axes->axis[a]);
             lua_rawseti(L, -2, (lua_Integer)a + 1);
         }
         lua_setfield(L, -2, "axes");
     }
     lua_newtable(L);
     for (size_t i = 0; i < sheet->count; i++) {
-        lua_pushstring(L, what->labels[i]);
+        lua_pushstring(L, page_content->labels[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     lua_setfield(L, -2, "labels");
@@ -120,14 +120,14 @@ int glintL_sheet_page(const glintL_sheet *sheet, const glintL_axes *axes, char *
     glint_draft *draft = NULL;
     glint_error error;
     glintL_made_text page;
-    content what = { sheet, axes, labels };
+    content page_content = { sheet, axes, labels };
     for (size_t i = 0; i < sheet->count; i++)
         if (glint_picture_bits(axes->pictures[i]) > 16) {
             snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: a page shows only .png files", sheet->files[i]);
             return GLINTL_EXIT_USAGE;
         }
     glint_status status = GLINT_ERR_NOMEM;
-    if (glintL_make_text(&MODULE, 1, "sheet", push_content, &what, &page, message)) {
+    if (glintL_make_text(&MODULE, 1, "sheet", push_content, &page_content, &page, message)) {
         status = glint_draft_create(sheet->path, &draft, &error);
         if (!status)
             status = append_page(draft, sheet, &page, &error);

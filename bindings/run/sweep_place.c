@@ -132,7 +132,7 @@ static void push_value_text(lua_State *L, int64_t i)
     lua_remove(L, -2);
 }
 
-void glintL_sweep_push_place(lua_State *L, int index, int64_t n)
+void glintL_sweep_push_position(lua_State *L, int index, int64_t n)
 {
     int64_t rest = n - 1;
     luaL_checkstack(L, 20, "sweep");

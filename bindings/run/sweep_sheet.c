@@ -89,7 +89,7 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
 
 // The contents of the sheet. The table `kept` on the stack owns the strings.
 typedef struct lists {
-    char **files, **places, **labels;
+    char **files, **positions, **labels;
 } lists;
 
 static int64_t read_whole(lua_State *L, int sheet, const char *name)
@@ -109,7 +109,7 @@ static const char *read_text(lua_State *L, int sheet, const char *name) // the t
 
 static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t count, const char *path)
 {
-    glintL_sheet out = { .path = path, .files = l->files, .count = (size_t)count, .places = l->places };
+    glintL_sheet out = { .path = path, .files = l->files, .count = (size_t)count, .positions = l->positions };
     out.labels = l->labels;
     out.label = read_text(L, sheet, "label");
     out.title = read_text(L, sheet, "title");
@@ -161,7 +161,7 @@ void glintL_sweep_check_together(lua_State *L, int index)
         if (!glintL_sheet_check(&made, message))
             glintL_error(L, "sweep.sheet.%s", message);
         if (lua_getfield(L, sheet, "label") == LUA_TSTRING) {
-            glintL_sweep_push_place(L, index, 1);
+            glintL_sweep_push_position(L, index, 1);
             check_template(L, lua_tostring(L, -2), lua_tostring(L, -1));
         }
     }
@@ -238,15 +238,15 @@ static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64
 {
     char path[GLINTL_PATH_SIZE];
     out->files = new_list(L, count, kept);
-    out->places = new_list(L, count, kept);
+    out->positions = new_list(L, count, kept);
     out->labels = lua_isfunction(L, label) ? new_list(L, count, kept) : NULL;
     for (int64_t n = 1; n <= count; n++) {
         if (!glintL_name_file(naming, first + n - 1, "beauty", path))
             glintL_error(L, "output: the file name '%s...' is too long", path);
         lua_pushstring(L, path);
         out->files[n - 1] = keep(L, kept);
-        glintL_sweep_push_place(L, job, n);
-        out->places[n - 1] = keep(L, kept);
+        glintL_sweep_push_position(L, job, n);
+        out->positions[n - 1] = keep(L, kept);
         if (out->labels) {
             push_label(L, label, job, n);
             out->labels[n - 1] = keep(L, kept);
@@ -317,7 +317,7 @@ static int draw_protected(lua_State *L)
     sheet.live = run->live;
     if (sheet.dpi == 0) // uses the dpi of the pictures
         sheet.dpi = dpi_of(run, job);
-    if (glintL_places_note(run, "sheet", output, what->first))
+    if (glintL_written_note(run, "sheet", output, what->first))
         draw(run, what, &sheet, &l);
     return 0;
 }

@@ -160,7 +160,8 @@ const glint_transform *glintL_to_transform(lua_State *L, int index);
 // ---- Patterns as values: bindings/pattern is a layer above, and registers its functions when the module opens ----
 
 typedef struct glintL_tracing {
-    const char *(*place)(lua_State *L, lua_CFunction reached); ///< glintL_traced_place; the others likewise, see below
+    const char *(*place)(lua_State *L,
+                         lua_CFunction reached); ///< glintL_traced_position; the others likewise, see below
     bool (*is_source)(lua_State *L, int index, bool is_shader);
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
@@ -189,7 +190,7 @@ int glintL_unit(lua_State *L);
 int glintL_reflect(lua_State *L);
 /// Returns the position of the traced function: "scene.lua:12: ". NULL: `reached`, found on the call stack of an error,
 /// is not the C function that calls it.
-const char *glintL_traced_place(lua_State *L, lua_CFunction reached);
+const char *glintL_traced_position(lua_State *L, lua_CFunction reached);
 /// Raises if a pattern's function is running, during which `what` would change the scene.
 void glintL_refuse_within_trace(lua_State *L, const char *what);
 /// Stores the patterns in the constructor's table at `table` with the object whose userdata is at `index`.
