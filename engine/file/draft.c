@@ -131,7 +131,7 @@ static char *target_of(const char *path)
 }
 
 /// Returns `name`, the target of a link at `path`, as a path from the current folder. NULL: out of memory.
-static char *beside(const char *path, const char *name)
+static char *sibling(const char *path, const char *name)
 {
     const char *slash = *name == '/' ? NULL : strrchr(path, '/');
     const size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(name) + 1;
@@ -153,7 +153,7 @@ static char *end_of_links(const char *path)
         if (length < 0)
             return end;
         link[length] = '\0';
-        char *next = beside(end, link);
+        char *next = sibling(end, link);
         free(end);
         end = next;
     }
@@ -236,7 +236,7 @@ static int open_hidden(glint_draft *draft)
         draft->temporary = NULL;
         return code;
     }
-    glint_drafts_collect_beside(draft->temporary);
+    glint_drafts_collect_in_folder(draft->temporary);
     return 0;
 }
 

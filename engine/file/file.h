@@ -29,7 +29,7 @@ glint_status glint_file_read_picture(const char *path, glint_bytes *out, glint_e
 void glint_host_name(char out[GLINT_HOST_SIZE]);
 /// Calls glint_drafts_collect for the folder of the file `path`, unless this process searched the folder recently. Any
 /// thread.
-void glint_drafts_collect_beside(const char *path);
+void glint_drafts_collect_in_folder(const char *path);
 /// Registers and removes the hidden name of a draft, which glint_drafts_abandon deletes in between. Any thread.
 void glint_draft_enlist(const char *temporary);
 void glint_draft_delist(const char *temporary);

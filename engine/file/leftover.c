@@ -127,7 +127,7 @@ static void collect_once(const char *path)
         glint_drafts_collect(path);
 }
 
-void glint_drafts_collect_beside(const char *path)
+void glint_drafts_collect_in_folder(const char *path)
 {
     const char *slash = strrchr(path, '/');
     char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : NULL;

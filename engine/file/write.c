@@ -484,7 +484,7 @@ bool glint_file_has_key(const char *path, const char *key)
     if (!path || !key)
         return false;
     struct glint_bytes bytes = { 0 };
-    glint_drafts_collect_beside(path); // a run that finds all its pictures finished opens no draft
+    glint_drafts_collect_in_folder(path); // a run that finds all its pictures finished opens no draft
     if (glint_file_read_picture(path, &bytes, NULL)) // for example a pipe, which stores nothing
         return false;
     bool has = glint_png_has_text(bytes.data, bytes.size, GLINT_PNG_KEY, key);

@@ -24,7 +24,7 @@ typedef struct arrangement {
     uint32_t *chunks; ///< scratch: one number for each chunk of primitives or of members
 } arrangement;
 
-static inline uint32_t comes_from(const arrangement *a, uint32_t position)
+static inline uint32_t source_of(const arrangement *a, uint32_t position)
 {
     const glint_index *index = a->geometry->index;
     return position < index->box_count ? index->order[position] : a->rest[position - index->box_count];
@@ -80,7 +80,7 @@ static void walk_cycles(void *context, size_t index, int worker)
         at[live++] = (uint32_t)next++ * STRIDE;
     while (live)
         for (uint32_t k = 0; k < live;) {
-            const uint32_t to = at[k], from = comes_from(a, to);
+            const uint32_t to = at[k], from = source_of(a, to);
             a->done[to] = 1;
             if (from % STRIDE) {
                 a->prims[to] = a->prims[from];
@@ -99,11 +99,11 @@ static void walk_cycles(void *context, size_t index, int worker)
 static void move_rest(arrangement *a)
 {
     for (uint32_t i = 0; i < a->count; i++) {
-        if (a->done[i] || comes_from(a, i) == i)
+        if (a->done[i] || source_of(a, i) == i)
             continue;
         const glint_prim first = a->prims[i];
         uint32_t to = i;
-        for (uint32_t from; (from = comes_from(a, to)) != i; to = from) {
+        for (uint32_t from; (from = source_of(a, to)) != i; to = from) {
             a->prims[to] = a->prims[from];
             a->done[to] = 1;
         }

@@ -30,18 +30,18 @@
 #define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< largest `near` of an entry
 
 /// A small sphere as the light sees it.
-typedef struct seen_sphere {
+typedef struct projected_sphere {
     float center[2], reach; ///< its centre, and how far from there a segment that hits it may be
     float radius; ///< radius of its circle in the light's view: see glint_light_grid
     float near; ///< w of its nearest point
     uint32_t id;
-} seen_sphere;
+} projected_sphere;
 
 typedef struct grid_maker {
     const glint_geometry_table *table;
     glint_light_grid *grid;
-    seen_sphere *seen; ///< scratch, one for each primitive of the table
-    uint32_t count; ///< number of `seen`
+    projected_sphere *projected; ///< scratch, one for each primitive of the table
+    uint32_t count; ///< number of `projected`
     float least[2], most[2]; ///< bounds of the positions that they cover
     float near, far; ///< least and largest `near`
     size_t max_bytes; ///< bytes that entries and cells may take
@@ -106,7 +106,8 @@ static bool aim(grid_maker *maker)
 /// The squared distance of a segment at (u, v) from the centre is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2). A
 /// segment that hits the sphere therefore has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the right side
 /// is at most the root at the centre plus the distance from there, which bounds that distance.
-static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double offset[3], seen_sphere *out)
+static bool project_sphere(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double offset[3],
+                           projected_sphere *out)
 {
     const glint_light_grid *grid = maker->grid;
     const double radius = (double)prim->filter_bound, w = vec_dot(grid->axis[2], offset);
@@ -145,7 +146,7 @@ static bool see_all(grid_maker *maker)
         const glint_prim *prim = &table->prims[i];
         if (!glint_prim_bounded(prim))
             continue;
-        if (is_small(maker, prim, offset) && see(maker, prim, i, offset, &maker->seen[maker->count]))
+        if (is_small(maker, prim, offset) && project_sphere(maker, prim, i, offset, &maker->projected[maker->count]))
             maker->count++;
         else if (!add_other(maker->grid, i))
             return false;
@@ -159,7 +160,7 @@ static float mean_reach(const grid_maker *maker)
 {
     double sum = 0;
     for (uint32_t i = 0; i < maker->count; i++)
-        sum += (double)maker->seen[i].reach;
+        sum += (double)maker->projected[i].reach;
     return (float)(sum / maker->count);
 }
 
@@ -168,12 +169,12 @@ static bool take_large(grid_maker *maker, float limit)
 {
     uint32_t large = 0, kept = 0;
     for (uint32_t i = 0; i < maker->count; i++)
-        large += maker->seen[i].reach > limit;
+        large += maker->projected[i].reach > limit;
     if (large + maker->grid->other_count > GLINT_GRID_OTHERS)
         return false;
     for (uint32_t i = 0; i < maker->count; i++)
-        if (!(maker->seen[i].reach > limit && add_other(maker->grid, maker->seen[i].id)))
-            maker->seen[kept++] = maker->seen[i];
+        if (!(maker->projected[i].reach > limit && add_other(maker->grid, maker->projected[i].id)))
+            maker->projected[kept++] = maker->projected[i];
     maker->count = kept;
     return true;
 }
@@ -187,7 +188,7 @@ static void bound_centers(grid_maker *maker)
     maker->near = HUGE_VALF;
     maker->far = -HUGE_VALF;
     for (uint32_t i = 0; i < maker->count; i++) {
-        const seen_sphere *s = &maker->seen[i];
+        const projected_sphere *s = &maker->projected[i];
         for (int j = 0; j < 2; j++) {
             maker->least[j] = fminf(maker->least[j], s->center[j] - s->reach);
             maker->most[j] = fmaxf(maker->most[j], s->center[j] + s->reach);
@@ -202,7 +203,8 @@ static inline uint32_t clamp(float x, float most) { return (uint32_t)(int32_t)(x
 
 /// Computes the first and last cell of a sphere along both axes, by the float arithmetic of the stage, which is
 /// monotonic.
-static inline void cells_of(const glint_light_grid *grid, const seen_sphere *s, uint32_t first[2], uint32_t last[2])
+static inline void cells_of(const glint_light_grid *grid, const projected_sphere *s, uint32_t first[2],
+                            uint32_t last[2])
 {
     for (int j = 0; j < 2; j++) {
         const float most = (float)(grid->count[j] - 1);
@@ -228,7 +230,7 @@ static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
         return limit + 1;
     for (uint32_t i = 0; i < maker->count && entries <= limit; i++) {
         uint32_t first[2], last[2];
-        cells_of(grid, &maker->seen[i], first, last);
+        cells_of(grid, &maker->projected[i], first, last);
         entries += (uint64_t)(last[0] - first[0] + 1) * (last[1] - first[1] + 1);
     }
     return entries;
@@ -256,35 +258,35 @@ static uint64_t choose_cells(grid_maker *maker)
 
 // ---- The entries ----
 
-static size_t seen_bytes(const grid_maker *maker) { return maker->table->prim_count * sizeof *maker->seen; }
+static size_t seen_bytes(const grid_maker *maker) { return maker->table->prim_count * sizeof *maker->projected; }
 
 /// Sorts the spheres by slices of depth; `near` becomes the front of the slice.
 static bool sort_by_depth(grid_maker *maker)
 {
-    seen_sphere *sorted = glint_scratch_resize(NULL, 0, seen_bytes(maker));
+    projected_sphere *sorted = glint_scratch_resize(NULL, 0, seen_bytes(maker));
     uint32_t next[SLICES + 1] = { 0 };
     const float depth = maker->far - maker->near, slices = depth > 0 ? (SLICES - 1) / depth : 0;
     if (!sorted)
         return false;
     for (uint32_t i = 0; i < maker->count; i++)
-        next[(uint32_t)((maker->seen[i].near - maker->near) * slices) + 1]++;
+        next[(uint32_t)((maker->projected[i].near - maker->near) * slices) + 1]++;
     float front[SLICES];
     for (uint32_t k = 0; k < SLICES; k++) {
         next[k + 1] += next[k];
         front[k] = HUGE_VALF;
     }
     for (uint32_t i = 0; i < maker->count; i++) {
-        const uint32_t slice = (uint32_t)((maker->seen[i].near - maker->near) * slices);
-        front[slice] = fminf(front[slice], maker->seen[i].near);
+        const uint32_t slice = (uint32_t)((maker->projected[i].near - maker->near) * slices);
+        front[slice] = fminf(front[slice], maker->projected[i].near);
     }
     for (uint32_t i = 0; i < maker->count; i++) {
-        const uint32_t slice = (uint32_t)((maker->seen[i].near - maker->near) * slices);
-        seen_sphere *to = &sorted[next[slice]++];
-        *to = maker->seen[i];
+        const uint32_t slice = (uint32_t)((maker->projected[i].near - maker->near) * slices);
+        projected_sphere *to = &sorted[next[slice]++];
+        *to = maker->projected[i];
         to->near = front[slice];
     }
-    glint_scratch_free(maker->seen, seen_bytes(maker));
-    maker->seen = sorted;
+    glint_scratch_free(maker->projected, seen_bytes(maker));
+    maker->projected = sorted;
     return true;
 }
 
@@ -294,7 +296,7 @@ typedef struct grid_entries {
 } grid_entries;
 
 /// Returns the part of a sphere's entries that is the same in all cells.
-static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
+static uint32_t size_of(const glint_light_grid *grid, const projected_sphere *s)
 {
     const double steps = GLINT_GRID_STEPS * (double)grid->cells;
     const double most = grid->count[0] > grid->count[1] ? grid->count[0] : grid->count[1];
@@ -305,15 +307,15 @@ static uint32_t size_of(const glint_light_grid *grid, const seen_sphere *s)
 }
 
 /// Returns a sphere's position along an axis, relative to a cell.
-static uint32_t step_of(const glint_light_grid *grid, const seen_sphere *s, int axis, uint32_t cell)
+static uint32_t step_of(const glint_light_grid *grid, const projected_sphere *s, int axis, uint32_t cell)
 {
     const double step = ((double)s->center[axis] - (double)grid->first[axis]) * (double)grid->cells - cell;
     return (uint32_t)(int32_t)((step + GLINT_GRID_ASIDE) * GLINT_GRID_STEPS + 0.5);
 }
 
 /// Writes a sphere to the position `next` of each of its cells.
-static void enter(const glint_light_grid *grid, const seen_sphere *s, const uint32_t first[2], const uint32_t last[2], uint32_t *next,
-                  const grid_entries *entries)
+static void enter(const glint_light_grid *grid, const projected_sphere *s, const uint32_t first[2],
+                  const uint32_t last[2], uint32_t *next, const grid_entries *entries)
 {
     const uint32_t size = size_of(grid, s), across = step_of(grid, s, 0, first[0]);
     uint32_t down = step_of(grid, s, 1, first[1]);
@@ -331,7 +333,7 @@ static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *
 {
     const glint_light_grid *grid = maker->grid;
     for (uint32_t i = 0; i < maker->count; i++) {
-        const seen_sphere *s = &maker->seen[i];
+        const projected_sphere *s = &maker->projected[i];
         uint32_t first[2], last[2];
         cells_of(grid, s, first, last);
         if (entries)
@@ -389,8 +391,8 @@ glint_status glint_light_grid_create(const glint_geometry_table *table, bool dir
     if (!table->nodes || table->prim_count < SMALLEST_COUNT)
         return GLINT_OK;
     maker.grid = glint_alloc(1, sizeof *maker.grid);
-    maker.seen = glint_scratch_resize(NULL, 0, seen_bytes(&maker));
-    if (maker.grid && maker.seen) {
+    maker.projected = glint_scratch_resize(NULL, 0, seen_bytes(&maker));
+    if (maker.grid && maker.projected) {
         *maker.grid = (glint_light_grid) { .directional = directional };
         vec_copy(maker.grid->position, position);
         vec_copy(maker.grid->origin, directional ? table->reference : position);
@@ -401,7 +403,7 @@ glint_status glint_light_grid_create(const glint_geometry_table *table, bool dir
     } else {
         enough = false;
     }
-    glint_scratch_free(maker.seen, seen_bytes(&maker));
+    glint_scratch_free(maker.projected, seen_bytes(&maker));
     if (!*out)
         glint_light_grid_destroy(maker.grid);
     return enough ? GLINT_OK : glint_fail_nomem(error);

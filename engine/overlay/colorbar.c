@@ -103,12 +103,12 @@ void glint_colorbar_measure(glint_layout *layout)
 {
     const bar b = make_bar(layout);
     const int along = b.length + 2 * overhang(layout, &b);
-    const int beside = b.thick + (b.marks.count ? b.tick + b.gap : 0);
+    const int extent = b.thick + (b.marks.count ? b.tick + b.gap : 0);
     if (is_horizontal(layout)) {
         layout->width = along;
-        layout->height = b.title_height + beside + (b.marks.count ? layout->typeface.height : 0);
+        layout->height = b.title_height + extent + (b.marks.count ? layout->typeface.height : 0);
     } else {
-        layout->width = beside + b.marks.widest;
+        layout->width = extent + b.marks.widest;
         layout->height = b.title_height + along;
     }
     layout->width = b.title_width > layout->width ? b.title_width : layout->width;

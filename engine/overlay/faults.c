@@ -12,13 +12,13 @@ typedef struct check {
     const glint_layout *layout;
     void (*warns)(void *context, const char *message);
     void *context;
-    char what[200]; ///< "label 'text'"
+    char label[200]; ///< "label 'text'"
 } check;
 
 static void warn(const check *c, const char *message)
 {
     char text[512];
-    snprintf(text, sizeof text, "%s: %s", c->what, message);
+    snprintf(text, sizeof text, "%s: %s", c->label, message);
     c->warns(c->context, text);
 }
 
@@ -30,7 +30,8 @@ static void describe(check *c)
     const char *name = desc->name[0] ? desc->name : desc->text, *end = name;
     for (int i = 0; i < SHOWN && *end && *end != '\n'; i++)
         glint_font_code(&end);
-    snprintf(c->what, sizeof c->what, *name ? "%s '%.*s%s'" : "%s", kinds[desc->kind], (int)(end - name), name, *end ? "..." : "");
+    snprintf(c->label, sizeof c->label, *name ? "%s '%.*s%s'" : "%s", kinds[desc->kind], (int)(end - name), name,
+             *end ? "..." : "");
 }
 
 /// Warns about the first character of a text that the font lacks.

@@ -29,7 +29,7 @@ const glint_stage glint_stage_surface = {
     .name = "surface",
     .doc = "point, normal and material of each hit",
     .called = has_surfaces,
-    .reads = GLINT_READS(LOOKS),
+    .reads = GLINT_READS(APPEARANCE),
 };
 
 const glint_stage glint_stage_light = {

@@ -147,7 +147,7 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
         key = view_key(plan, key);
     if (which & GLINT_READS(POSITIONS))
         GLINT_KEY_ADD(key, plan->where);
-    if (which & GLINT_READS(LOOKS))
+    if (which & GLINT_READS(APPEARANCE))
         GLINT_KEY_ADD(key, geometry->look);
     if (which & GLINT_READS(PATTERNS))
         key = programs_key(plan, GLINT_FIELDS_PLANES, key);
@@ -194,9 +194,10 @@ static glint_key vertex_key(const glint_plan *plan)
         key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
     return add_inputs(plan,
-                      GLINT_READS(POSITIONS) | GLINT_READS(LOOKS) | GLINT_READS(CUT_OUTS) | GLINT_READS(HIGHLIGHTS) |
-                          GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS) |
-                          GLINT_READS(MATERIALS) | GLINT_READS(TINTS) | GLINT_READS_OWN(DERIVATIVE),
+                      GLINT_READS(POSITIONS) | GLINT_READS(APPEARANCE) | GLINT_READS(CUT_OUTS) |
+                          GLINT_READS(HIGHLIGHTS) | GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) |
+                          GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS) | GLINT_READS(TINTS) |
+                          GLINT_READS_OWN(DERIVATIVE),
                       key);
 }
 
@@ -212,7 +213,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         light->key = light_position_key(light, light_base);
         light->position_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
         const uint32_t slot = i % GLINT_LIGHT_CHUNK; // one call of shade sums the samples of a light
-        light->look_key = glint_key_add(light_color_key(light, light->position_key), &slot, sizeof slot);
+        light->color_key = glint_key_add(light_color_key(light, light->position_key), &slot, sizeof slot);
     }
     plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);
     plan->matte_keys = glint_alloc(plan->material_count, sizeof *plan->matte_keys);

@@ -60,7 +60,7 @@ typedef struct glint_plan_light {
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
     glint_key key; ///< hash of the data that `light` and `occlude` read for this light
-    glint_key position_key, look_key; ///< `key` and whether it casts shadows; position_key and the colours
+    glint_key position_key, color_key; ///< `key` and whether it casts shadows; position_key and the colours
 } glint_plan_light;
 
 /// An edge of a polygon: its first corner, and the unit vector perpendicular to it.

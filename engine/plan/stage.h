@@ -20,7 +20,7 @@ struct glint_plan;
 typedef enum glint_scene_part {
     GLINT_PART_VIEW, ///< camera, picture size, samples
     GLINT_PART_POSITIONS, ///< positions of the surfaces
-    GLINT_PART_LOOKS, ///< material and two-sidedness of each surface
+    GLINT_PART_APPEARANCE, ///< material and two-sidedness of each surface
     GLINT_PART_PATTERNS, ///< programs of materials, and the shapes' own spaces
     GLINT_PART_CUT_OUTS, ///< programs of holes, and materials that are invisible
     GLINT_PART_BUMPS, ///< programs that turn normals

@@ -19,8 +19,8 @@ glint_value glint_slope_number(glint_slope_maker *s, double x);
 /// Returns the result of an operation of up to three operands. Pass 0 for unused operands.
 glint_value glint_slope_op(glint_slope_maker *s, glint_op op, glint_value a, glint_value b, glint_value c);
 
-/// Adds `what` to the adjoint of a value, if the value varies.
-void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value what);
+/// Adds `amount` to the adjoint of a value, if the value varies.
+void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value amount);
 /// Passes the adjoint of value i, an operation, on to its operands, times the partial derivatives.
 void glint_slope_pass(glint_slope_maker *s, glint_value i);
 

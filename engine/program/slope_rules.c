@@ -48,11 +48,11 @@ static glint_value unless(glint_slope_maker *s, glint_value condition, glint_val
     return glint_slope_op(s, GLINT_OP_SELECT, condition, glint_slope_number(s, 0), a);
 }
 
-void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value what)
+void glint_slope_give(glint_slope_maker *s, glint_value to, glint_value amount)
 {
     if (s->status || !s->varies[to])
         return;
-    s->given[to] = s->given[to] == GLINT_SLOPE_NOTHING ? what : two(s, GLINT_OP_ADD, s->given[to], what);
+    s->given[to] = s->given[to] == GLINT_SLOPE_NOTHING ? amount : two(s, GLINT_OP_ADD, s->given[to], amount);
 }
 
 // ---- Rules: g is the adjoint of the result r; a, b, c are its operands --------------------------------------------

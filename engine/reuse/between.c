@@ -52,7 +52,7 @@ static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, si
 
 /// Returns the largest distance between a lens's rays and the pinhole's rays near a ball, whose centre is at depth
 /// `along`.
-static double beside(const glint_plan *plan, double along, double radius)
+static double margin(const glint_plan *plan, double along, double radius)
 {
     const glint_plan_camera *camera = &plan->camera;
     if (!plan->lens)
@@ -70,7 +70,7 @@ bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t co
         double offset[3];
         vec_sub(offset, balls[i].center, camera->eye);
         const double own = loosened(balls[i].radius, length_of(offset));
-        const double radius = own + beside(plan, vec_dot(offset, camera->forward), own);
+        const double radius = own + margin(plan, vec_dot(offset, camera->forward), own);
         bool outside = false;
         for (int side = 0; side < 4; side++)
             outside = outside || vec_dot(s.inwards[side], offset) + s.offset[side] < -radius * s.length[side];

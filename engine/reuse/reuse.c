@@ -148,7 +148,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile
         if (!glint_key_equal(light->position, plan->lights[i].position_key))
             return (glint_key) { 0 };
         if (light->reaches)
-            key = glint_key_mix(key, plan->lights[i].look_key);
+            key = glint_key_mix(key, plan->lights[i].color_key);
     }
     if (plan->light_count > reuse->light_count)
         key = glint_key_mix(key, plan->all_lights_key);

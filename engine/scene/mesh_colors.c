@@ -118,7 +118,7 @@ glint_status glint_mesh_picture_faces(glint_mesh_reader *r, const char *name)
     glint_texture *texture = NULL;
     glint_material *material = NULL;
     glint_error inner;
-    char *path = glint_mesh_beside(r->text.path, name);
+    char *path = glint_mesh_sibling(r->text.path, name);
     if (!path)
         return glint_fail_nomem(r->error);
     desc.path = path;

@@ -79,7 +79,7 @@ bool glint_mesh_is_word(const char *line, const char *word);
 /// Returns the path of the file `name`, which may be quoted: relative to the folder of `path`, or as it is if
 /// absolute. If that file does not exist, returns the file of the same last name in the folder of `path`. NULL: out
 /// of memory; the caller frees it.
-char *glint_mesh_beside(const char *path, const char *name);
+char *glint_mesh_sibling(const char *path, const char *name);
 
 typedef struct glint_mesh_library glint_mesh_library; ///< mesh_mtl.h
 

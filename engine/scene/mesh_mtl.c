@@ -151,7 +151,7 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, glint_
     read_options(text, glint_skip_blanks(end), &o, ignored);
     if (end == at)
         return glint_mesh_refuse(text, "the name of a picture", at);
-    char *name = strndup(at, (size_t)(end - at)), *path = name ? glint_mesh_beside(text->path, name) : NULL;
+    char *name = strndup(at, (size_t)(end - at)), *path = name ? glint_mesh_sibling(text->path, name) : NULL;
     free(name);
     if (!path)
         return glint_fail_nomem(text->error);
@@ -337,7 +337,7 @@ glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_me
 {
     bool there = false;
     char *words = strdup(names), *rest = NULL;
-    char *path = glint_mesh_beside(reader->text.path, names);
+    char *path = glint_mesh_sibling(reader->text.path, names);
     glint_status status = path && words ? GLINT_OK : glint_fail_nomem(reader->error);
     if (!status && !library->file)
         library->file = strdup(path);
@@ -346,7 +346,7 @@ glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_me
         status = read_file(library, reader, path, !several, &there);
     for (char *word = several && !status && !there ? strtok_r(words, " \t", &rest) : NULL;
          word && *word != '#' && !status; word = strtok_r(NULL, " \t", &rest)) {
-        char *one = glint_mesh_beside(reader->text.path, word);
+        char *one = glint_mesh_sibling(reader->text.path, word);
         status = one ? read_file(library, reader, one, true, &there) : glint_fail_nomem(reader->error);
         free(one);
     }

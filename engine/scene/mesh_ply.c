@@ -122,23 +122,23 @@ static glint_status read_number(body *b, glint_ply_type type, double *out)
 }
 
 /// Checks that a number is whole and 0 .. most.
-static glint_status check_whole(body *b, double number, double most, const char *what, uint32_t *out)
+static glint_status check_whole(body *b, double number, double most, const char *field, uint32_t *out)
 {
     char expected[96], got[40];
     if (number >= 0 && number <= most && number == floor(number)) {
         *out = (uint32_t)number;
         return GLINT_OK;
     }
-    snprintf(expected, sizeof expected, "%s, 0 .. %.0f,", what, most);
+    snprintf(expected, sizeof expected, "%s, 0 .. %.0f,", field, most);
     snprintf(got, sizeof got, "%.15g", number);
     return fail_at(b, expected, got);
 }
 
-static glint_status read_whole(body *b, glint_ply_type type, double most, const char *what, uint32_t *out)
+static glint_status read_whole(body *b, glint_ply_type type, double most, const char *field, uint32_t *out)
 {
     double number;
     glint_status status = read_number(b, type, &number);
-    return status ? status : check_whole(b, number, most, what, out);
+    return status ? status : check_whole(b, number, most, field, out);
 }
 
 // ---- Rows ----

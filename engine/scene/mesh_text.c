@@ -259,7 +259,7 @@ static char *join(const char *path, const char *name)
     return out;
 }
 
-char *glint_mesh_beside(const char *path, const char *name)
+char *glint_mesh_sibling(const char *path, const char *name)
 {
     char *out = join(path, name);
     const char *slash = out ? strpbrk(name, "/\\") : NULL;

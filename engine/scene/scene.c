@@ -135,18 +135,18 @@ void glint_scene_release(glint_scene *scene)
     free(scene);
 }
 
-static glint_status add(glint_list *list, void *object, const char *what, glint_error *error)
+static glint_status add(glint_list *list, void *object, const char *name, glint_error *error)
 {
     if (glint_list_find(list, object) < list->count)
-        return glint_fail(error, GLINT_ERR_INVALID, "%s: already in the scene", what);
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: already in the scene", name);
     return glint_list_add(list, object, error);
 }
 
-static glint_status drop(glint_list *list, const void *object, const char *what, glint_error *error)
+static glint_status drop(glint_list *list, const void *object, const char *name, glint_error *error)
 {
     const size_t index = glint_list_find(list, object);
     if (index == list->count)
-        return glint_fail(error, GLINT_ERR_INVALID, "%s: not in the scene", what);
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: not in the scene", name);
     glint_list_remove(list, index);
     return GLINT_OK;
 }

@@ -36,7 +36,7 @@ return {
       scene:remove(parts.lamp)
       scene:add(glint.sphere_light { position = { 0, 20, 0 }, radius = 1, shadow = "caps" })
     end },
-  { name = "mesh", part = "MESH", functions = { "triangle", "see_edges" },
+  { name = "mesh", part = "MESH", functions = { "triangle", "make_ray_edges" },
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
     end },

@@ -90,8 +90,8 @@ void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame
         out->point[c] = (is_float ? work->point[c] : tile->surface.point[c]) + at;
         out->normal[c] = (is_float ? work->normal[c] : tile->surface.normal[c]) + at;
         out->eye[c] = work->eye[c] + at;
-        for (int what = 0; what < 3; what++)
-            out->slope[what][c] = NULL;
+        for (int quantity = 0; quantity < 3; quantity++)
+            out->slope[quantity][c] = NULL;
     }
 }
 

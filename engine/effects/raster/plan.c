@@ -372,7 +372,7 @@ typedef struct outlook {
     bool indexed;
 } outlook;
 
-static outlook look_at(const glint_plan *plan)
+static outlook survey(const glint_plan *plan)
 {
     enum { LOOKED_AT = 509 }; // a prime, so that samples do not follow the lines of a regular mesh
     glint_geometry *geometry = plan->geometry;
@@ -400,7 +400,7 @@ static outlook look_at(const glint_plan *plan)
 bool glint_raster_pays(const glint_plan *plan, bool needs_index)
 {
     const glint_geometry *geometry = plan->geometry;
-    const outlook known = look_at(plan);
+    const outlook known = survey(plan);
     const double triangles = geometry->table.triangles, samples = plan->desc.samples;
     const double pixels = plan->desc.width * plan->desc.height * samples;
     const double raster = triangles * PROJECT_NS + (known.alone ? 0 : pixels * MERGE_NS);

@@ -72,7 +72,7 @@ static bool is_steady(glint_plan *const *times, size_t count, uint32_t first, ui
 {
     for (size_t k = 1; k < count; k++)
         for (uint32_t i = first; i < first + rows; i++)
-            if (!glint_key_equal(times[k]->lights[i].look_key, times[0]->lights[i].look_key))
+            if (!glint_key_equal(times[k]->lights[i].color_key, times[0]->lights[i].color_key))
                 return false;
     return true;
 }

@@ -288,7 +288,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 // ---- A tile ----
 
 /// Computes a block unless another worker has begun it. Returns whether the block is ready.
-static bool ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+static bool request_block(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     unsigned char state = atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire);
     if (state != GLINT_BLOCK_NONE ||
@@ -396,7 +396,7 @@ void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, doubl
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
         own_of(tile)->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
-    if (!each_block(tile, frame, ask_for))
+    if (!each_block(tile, frame, request_block))
         each_block(tile, frame, wait_for);
     spread(tile, frame, sum);
     if (frame->plan->derivatives)

@@ -108,7 +108,7 @@ static double intersect_flat(const glint_plan_visible_light *visible_light, cons
 }
 
 /// Returns whether a surface at `t` lies in the light's plane, within rounding.
-static bool lies_in(const glint_plan_visible_light *visible_light, const visible_light_ray *ray, double t)
+static bool is_inside(const glint_plan_visible_light *visible_light, const visible_light_ray *ray, double t)
 {
     double p[3], offset[3];
     if (visible_light->ball || !(t < HUGE_VAL))
@@ -129,7 +129,7 @@ static uint32_t see(const struct glint_visible_light *visible_light, const glint
     for (uint32_t i = 0; i < visible_light->near_count; i++) {
         const glint_plan_visible_light *light = &plan->visible_lights[visible_light->near[i]];
         const double at = light->ball ? intersect_ball(light, ray) : intersect_flat(light, ray);
-        const double bound = best == GLINT_MISS && at >= surface && lies_in(light, ray, surface) ? HUGE_VAL : *t;
+        const double bound = best == GLINT_MISS && at >= surface && is_inside(light, ray, surface) ? HUGE_VAL : *t;
         if (!(at > 0 && at < bound))
             continue;
         *t = at;

@@ -170,7 +170,7 @@ static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lane
     if (face) {
         t = R(face_t)(face, rays->o, rays->d);
     } else {
-        const R(seen_edges) edges = R(see_edges)(p, rays->d, false);
+        const R(ray_edges) edges = R(make_ray_edges)(p, rays->d, false);
         for (int j = 0; j < 3; j++)
             z[j] = z[j] / (dz * scale);
         t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);

@@ -218,8 +218,8 @@ INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool own
         for (int k = 0; k < 3; k++)
             d[k] = r_load(leaf->direction[k] + i);
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
-        const R(seen_edges) edges = R(see_edges)(p, d, false);
-        unsigned hits = rm_bits(R(intersect_seen)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
+        const R(ray_edges) edges = R(make_ray_edges)(p, d, false);
+        unsigned hits = rm_bits(R(intersect_edges)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
         r_store(leaf->t + i, t);
         if (leaf->faced)
             hits = R(decide_faced)(tile, leaf, own, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);

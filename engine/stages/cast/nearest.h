@@ -237,7 +237,7 @@ static inline void R(begin_balls)(const glint_cast_args *args, size_t at, R(firs
 }
 
 /// Stops the search of a ray beyond `far`.
-static inline void R(look_no_further)(R(first_balls) * first, int lane, float far)
+static inline void R(limit_distance)(R(first_balls) * first, int lane, float far)
 {
     first->far[lane] = smaller(first->far[lane], far);
 }
@@ -367,7 +367,7 @@ static inline void R(note_ball)(R(first_balls) * first, int lane, uint32_t id, f
     } else {
         first->next[lane] = smaller(first->next[lane], entry);
     }
-    R(look_no_further)(first, lane, sure);
+    R(limit_distance)(first, lane, sure);
 }
 
 /// Records the spheres of a node in the slots of `mask`.

@@ -119,9 +119,9 @@ static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint3
         rm hit;
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
-            const R(seen_edges) edges = R(see_edges)(p, d, shared_edge);
+            const R(ray_edges) edges = R(make_ray_edges)(p, d, shared_edge);
             hit =
-                R(intersect_seen)(&edges, p, o, d, r_set(args->geometry->scale), R(face_of)(args->geometry, prim), &t);
+                R(intersect_edges)(&edges, p, o, d, r_set(args->geometry->scale), R(face_of)(args->geometry, prim), &t);
             hit = R(unless_begun_on)(args->geometry, prim, shared_edge ? args->leaving + at + i : NULL, o, hit, t);
             if (shared_edge)
                 hit = R(intersect_shared_edge)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);

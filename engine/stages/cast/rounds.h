@@ -131,7 +131,7 @@ INNER void R(intersect_round)(const glint_geometry_table *table, const R(rounds)
             p[j][k] = (corner[j][k] - o[k]) * scale;
         }
     }
-    const R(seen_edges) edges = R(edges_along)(p, d, 2, true);
+    const R(ray_edges) edges = R(edges_along)(p, d, 2, true);
     out->at = R(at_triangle)(table, &edges);
     if (!out->at)
         return;
@@ -179,7 +179,7 @@ static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args 
                 R(update_ray)(args, ray, id, t);
             else
                 R(decide_rays)(args, g, id, 1u << lane);
-            R(look_no_further)(&rounds->first, (int)lane, R(reach_in_index)(args, ((const real *)args->t)[ray]));
+            R(limit_distance)(&rounds->first, (int)lane, R(reach_in_index)(args, ((const real *)args->t)[ray]));
         }
     }
     rounds->count = 0;
@@ -199,7 +199,7 @@ static __attribute__((noinline)) void R(decide_solids)(const glint_cast_args *ar
     }
     for (; nearer; nearer &= nearer - 1) {
         const int lane = __builtin_ctz(nearer);
-        R(look_no_further)(&rounds->first, lane, R(reach_in_index)(args, ((const real *)args->t)[at + (size_t)lane]));
+        R(limit_distance)(&rounds->first, lane, R(reach_in_index)(args, ((const real *)args->t)[at + (size_t)lane]));
     }
     rounds->solids = 0;
 }

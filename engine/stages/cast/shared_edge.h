@@ -146,7 +146,7 @@ static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const r
         if (!(low[k] <= at + loose && at - loose <= high[k]))
             return false;
     }
-    const R(seen_edges) edges = R(see_edges)(p, direction, true);
+    const R(ray_edges) edges = R(make_ray_edges)(p, direction, true);
     const vr move = R(abs)(edges.dz) * r_set(loose);
     return rm_bits(rm_and(R(within)(&edges, move * (edges.reach + r_set(2) * move)),
                           R(between_corners)(p, direction, move))) &
@@ -171,7 +171,7 @@ static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real sl
 }
 
 /// Returns the lanes whose lines pass the triangle, within the error of their origins.
-static inline unsigned R(at_triangle)(const glint_geometry_table *table, const R(seen_edges) * edges)
+static inline unsigned R(at_triangle)(const glint_geometry_table *table, const R(ray_edges) * edges)
 {
     // above every `loose`: the sizes that it is computed from are at most 12 extents
     const vr move = R(abs)(edges->dz) * r_set((real)(13 * GLINT_POINT_SLACK * table->extent * table->scale));
@@ -179,7 +179,7 @@ static inline unsigned R(at_triangle)(const glint_geometry_table *table, const R
 }
 
 /// Returns the lanes of at_triangle that may reach it.
-static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(seen_edges) * edges, vr t)
+static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(ray_edges) * edges, vr t)
 {
     return R(at_triangle)(table, edges) & rm_bits(r_lt(r_set(0), t));
 }
@@ -188,7 +188,7 @@ static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R
 /// the lanes that pass near this one's edge. `at`: the first lane of the vector; `own`: lanes that leave this
 /// triangle; `edges`: with reach.
 static inline rm R(intersect_shared_edge)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
-                                          const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
+                                          const R(flat) * flat, const R(ray_edges) * edges, rm hit, vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const real *const m = flat->m;

@@ -7,21 +7,21 @@
 #include "engine/stages/simd/real.h"
 
 /// A triangle in the space of a ray.
-typedef struct R(seen_edges) {
+typedef struct R(ray_edges) {
     vr e[3]; ///< unnormalised weights of the corners
     vr dz; ///< the direction's largest component
     vr depth; ///< weighted sum of the corners along that axis
     vr reach; ///< sum of the absolute values of the terms of e; only written if wanted
-} R(seen_edges);
+} R(ray_edges);
 
 static inline vr R(abs)(vr x) { return r_max(x, -x); }
 
 /// Computes the edge functions. `z`: the axis of the direction's largest component.
-static inline R(seen_edges) R(edges_along)(vr p[3][3], const vr d[3], int z, bool want_reach)
+static inline R(ray_edges) R(edges_along)(vr p[3][3], const vr d[3], int z, bool want_reach)
 {
     const int x = (z + 1) % 3, y = (z + 2) % 3;
     vr X[3], Y[3];
-    R(seen_edges) out;
+    R(ray_edges) out;
     for (int j = 0; j < 3; j++) {
         X[j] = p[j][x] * d[z] - p[j][z] * d[x];
         Y[j] = p[j][y] * d[z] - p[j][z] * d[y];
@@ -37,9 +37,9 @@ static inline R(seen_edges) R(edges_along)(vr p[3][3], const vr d[3], int z, boo
     return out;
 }
 
-static inline R(seen_edges) R(select_edges)(rm mask, const R(seen_edges) * a, const R(seen_edges) * b)
+static inline R(ray_edges) R(select_edges)(rm mask, const R(ray_edges) * a, const R(ray_edges) * b)
 {
-    R(seen_edges) out;
+    R(ray_edges) out;
     for (int j = 0; j < 3; j++)
         out.e[j] = r_select(mask, a->e[j], b->e[j]);
     out.dz = r_select(mask, a->dz, b->dz);
@@ -50,14 +50,14 @@ static inline R(seen_edges) R(select_edges)(rm mask, const R(seen_edges) * a, co
 
 /// Computes the edge functions. p: the corners relative to the rays' origins. All rays of a group nearly always have
 /// the same axis.
-INNER R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
+INNER R(ray_edges) R(make_ray_edges)(vr p[3][3], const vr d[3], bool want_reach)
 {
     const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
     const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
     const unsigned ys = rm_bits(y), zs = rm_bits(z), all = (1u << VR) - 1;
     if (zs == all)
         return R(edges_along)(p, d, 2, want_reach);
-    R(seen_edges) out, other;
+    R(ray_edges) out, other;
     if (ys == all) {
         out = R(edges_along)(p, d, 1, want_reach);
     } else {
@@ -74,10 +74,10 @@ INNER R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
     return out;
 }
 
-static inline vr R(det)(const R(seen_edges) * edges) { return (edges->e[0] + edges->e[1]) + edges->e[2]; }
+static inline vr R(det)(const R(ray_edges) * edges) { return (edges->e[0] + edges->e[1]) + edges->e[2]; }
 
 /// Returns whether the ray passes all edges on one side, or on them, within `reach`.
-static inline rm R(within)(const R(seen_edges) * edges, vr reach)
+static inline rm R(within)(const R(ray_edges) * edges, vr reach)
 {
     const vr *e = edges->e;
     return rm_or(r_le(-reach, r_min(r_min(e[0], e[1]), e[2])), r_le(r_max(r_max(e[0], e[1]), e[2]), reach));
@@ -108,7 +108,7 @@ static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
 
 /// Returns whether the ray passes through the triangle or its edges. An edge function of 0 may have lost its sign by
 /// rounding. A triangle seen edge-on has such edge functions all along its plane, and only the corners bound it.
-static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3])
+static inline rm R(passes)(const R(ray_edges) * edges, vr p[3][3], const vr d[3])
 {
     const vr *e = edges->e, zero = r_set(0);
     const rm inside = R(within)(edges, zero);
@@ -126,8 +126,8 @@ static inline const glint_face *R(face_of)(const glint_geometry_table *table, co
 
 /// Intersects a triangle in the space of the ray; p: the corners relative to the ray's origin, in units of the table.
 /// face: of its shared plane, or NULL.
-static inline rm R(intersect_seen)(const R(seen_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
-                                   const glint_face *face, vr *t)
+static inline rm R(intersect_edges)(const R(ray_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
+                                    const glint_face *face, vr *t)
 {
     if (face)
         *t = R(face_t)(face, o, d);
@@ -140,8 +140,8 @@ static inline rm R(intersect_seen)(const R(seen_edges) * edges, vr p[3][3], cons
 static inline rm R(intersect_triangle)(vr p[3][3], const vr o[3], const vr d[3], vr scale, const glint_face *face,
                                        vr *t)
 {
-    const R(seen_edges) edges = R(see_edges)(p, d, false);
-    return R(intersect_seen)(&edges, p, o, d, scale, face, t);
+    const R(ray_edges) edges = R(make_ray_edges)(p, d, false);
+    return R(intersect_edges)(&edges, p, o, d, scale, face, t);
 }
 
 /// Copies a triangle's corners into every lane.
@@ -153,7 +153,7 @@ static inline void R(corners_of)(const glint_prim *prim, vr corner[3][3])
 }
 
 /// Computes corners relative to a point.
-static inline void R(corners_seen)(vr corner[3][3], const vr from[3], double scale, vr p[3][3])
+static inline void R(relative_corners)(vr corner[3][3], const vr from[3], double scale, vr p[3][3])
 {
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
@@ -165,7 +165,7 @@ static inline void R(corners_from)(const vr from[3], const glint_prim *prim, dou
 {
     vr corner[3][3];
     R(corners_of)(prim, corner);
-    R(corners_seen)(corner, from, scale, p);
+    R(relative_corners)(corner, from, scale, p);
 }
 
 // ---- Surface ----
@@ -192,8 +192,8 @@ static inline void R(triangle_point)(vr corner[3][3], double scale, const vr fro
                                      vr point[3], vr *slack)
 {
     vr p[3][3], f[3], g[3];
-    R(corners_seen)(corner, from, scale, p);
-    const R(seen_edges) edges = R(see_edges)(p, d, false);
+    R(relative_corners)(corner, from, scale, p);
+    const R(ray_edges) edges = R(make_ray_edges)(p, d, false);
     const vr inverse = r_set(1) / R(det)(&edges);
     for (int j = 0; j < 3; j++)
         w[j] = edges.e[j] * inverse;
@@ -252,7 +252,7 @@ static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const
 
 /// Returns whether the triangle separates the light from points in its plane: the points touch it, and the light is
 /// on the side away from the viewer, from whom `ray` came.
-static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(seen_edges) * edges,
+static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(ray_edges) * edges,
                                      const R(triangle_plane) * plane, vr slack, double scale, const vr ray[3])
 {
     const vr zero = r_set(0);
@@ -283,7 +283,7 @@ static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr poin
 {
     const vr zero = r_set(0);
     vr p[3][3], q[3];
-    R(corners_seen)(corner, point, scale, p);
+    R(relative_corners)(corner, point, scale, p);
     for (int k = 0; k < 3; k++)
         q[k] = point[k] - corner[0][k];
     const vr h = DOT(plane->m, q);
@@ -292,7 +292,7 @@ static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr poin
     const vr bound = spread * R(abs)(slack) + r_set(GLINT_POINT_SLACK) * rounding;
     const rm in_plane = r_le(R(abs)(h), bound), on = rm_and(r_lt(zero, slack), in_plane);
     const bool any_on = rm_bits(on);
-    const R(seen_edges) edges = R(see_edges)(p, d, any_on);
+    const R(ray_edges) edges = R(make_ray_edges)(p, d, any_on);
     const vr det = R(det)(&edges);
     const rm crosses =
         rm_or(rm_and(r_lt(h, zero), r_lt(zero, plane->light)), rm_and(r_lt(zero, h), r_lt(plane->light, zero)));

@@ -31,11 +31,11 @@ typedef struct shine_lanes {
     bool weighs; ///< false: the weight is 1
 } shine_lanes;
 
-INNER void load_points(const glint_derivative_points *points, int what, const unsigned slopes, int i, vs out[3])
+INNER void load_points(const glint_derivative_points *points, int quantity, const unsigned slopes, int i, vs out[3])
 {
-    const double *const *from = what == 0 ? points->point : what == 1 ? points->normal : points->eye;
+    const double *const *from = quantity == 0 ? points->point : quantity == 1 ? points->normal : points->eye;
     for (int c = 0; c < 3; c++)
-        out[c] = s_load(from[c], points->slope[what][c], slopes & SLOPES_BENT, i);
+        out[c] = s_load(from[c], points->slope[quantity][c], slopes & SLOPES_BENT, i);
 }
 
 INNER seen_lanes seen_points(const glint_derivative_points *points, const unsigned slopes, int i)

@@ -117,10 +117,10 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
         }
         const vf nearest = f_set(view->base) + low[2] * f_set(view->inverse);
         const vf farthest = f_set(view->base) + high[2] * f_set(view->inverse);
-        vf beside = f_set(0), around = f_set(0);
+        vf moment = f_set(0), around = f_set(0);
         if (lens) {
             const fm ahead = f_lt(f_set(0), nearest);
-            beside = f_select(
+            moment = f_select(
                 ahead,
                 f_max(lens_share(lens, low[2], f_set(1) / nearest), lens_share(lens, high[2], f_set(1) / farthest)),
                 f_set(0));
@@ -134,7 +134,7 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
             const vf start = f_set(view->first[j]), end = f_set(view->last[j]);
             vf margin = f_set(view->margin);
             if (lens) {
-                margin = margin + f_set(lens->reach[j]) * beside;
+                margin = margin + f_set(lens->reach[j]) * moment;
                 low[j] = low[j] - f_set(lens->reach[j]) * around;
                 high[j] = high[j] + f_set(lens->reach[j]) * around;
             }
@@ -325,7 +325,7 @@ static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
 /// c from one line to the other, the lines pass each other at the distance |n . c| / |n|, n = d x e. All terms with a
 /// ray's screen position are linear in it.
 typedef struct rod_on_screen {
-    float beside[3]; ///< n . c: coefficients of 1, u, v
+    float moment[3]; ///< n . c: coefficients of 1, u, v
     float n[3][2]; ///< n: of 1 and v; of 1 and u; of u and v
     float reach2, margin; ///< square of the maximum distance of the lines; above the rounding error of n . c and n
         ///< reach
@@ -351,9 +351,9 @@ static inline void see_rod(const glint_geometry_table *geometry, const glint_pri
         }
     }
     const float du = view->unit[0] * inverse, dv = view->unit[1] * inverse;
-    out->beside[0] = c[1] * e[0] - c[0] * e[1];
-    out->beside[1] = du * (c[2] * e[1] - c[1] * e[2]) + view->unit[0] * (base * e[1]);
-    out->beside[2] = dv * (c[0] * e[2] - c[2] * e[0]) - view->unit[1] * (base * e[0]);
+    out->moment[0] = c[1] * e[0] - c[0] * e[1];
+    out->moment[1] = du * (c[2] * e[1] - c[1] * e[2]) + view->unit[0] * (base * e[1]);
+    out->moment[2] = dv * (c[0] * e[2] - c[2] * e[0]) - view->unit[1] * (base * e[0]);
     memcpy(out->n, (const float[3][2]) { { -e[1], dv * e[2] }, { e[0], -(du * e[2]) }, { du * e[1], -(dv * e[0]) } }, sizeof out->n);
     const float reach = 1.00001f * solid->thick + (view->reach + view->reach_of_numbers * numbers);
     const float sizes = (fabsf(c[0]) + fabsf(c[1])) + (fabsf(c[2]) + base * view->spread) + (numbers + reach);
@@ -364,10 +364,10 @@ static inline void see_rod(const glint_geometry_table *geometry, const glint_pri
 /// Returns the lanes whose rays, at screen positions u, v, may hit the rod.
 static inline unsigned near_rod(const rod_on_screen *rod, vf u, vf v)
 {
-    const vf beside = (f_set(rod->beside[0]) + u * f_set(rod->beside[1])) + v * f_set(rod->beside[2]);
+    const vf moment = (f_set(rod->moment[0]) + u * f_set(rod->moment[1])) + v * f_set(rod->moment[2]);
     const vf n[3] = { f_set(rod->n[0][0]) + v * f_set(rod->n[0][1]), f_set(rod->n[1][0]) + u * f_set(rod->n[1][1]),
                       u * f_set(rod->n[2][0]) + v * f_set(rod->n[2][1]) };
-    const vf least = f_max(f_abs(beside) - f_set(rod->margin), f_set(0));
+    const vf least = f_max(f_abs(moment) - f_set(rod->margin), f_set(0));
     return ~fm_bits(f_lt(f_set(rod->reach2) * DOT(n, n), least * least)) & ((1u << VF) - 1);
 }
 

@@ -68,7 +68,7 @@ static inline float reach_of(float x, float lower, float upper) { return larger(
 static inline float largest_of(float lower, float upper) { return larger(fabsf(lower), fabsf(upper)); }
 
 /// Computes the extent of a rectangle along the normal (-ey, ex) of a line through (x, y).
-static inline void beside_line(int a, int b, float x, float y, float ex, float ey, const float lower[3],
+static inline void distances_to_line(int a, int b, float x, float y, float ex, float ey, const float lower[3],
                                     const float upper[3], float *least, float *most)
 {
     const float left_x = -ey * (lower[a] - x), right_x = -ey * (upper[a] - x);
@@ -83,9 +83,9 @@ static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, fl
                                    const float lower[3], const float upper[3], const light_bounds *light, bool wide)
 {
     float least, most, light_least = 0, light_most = 0;
-    beside_line(a, b, x, y, ex, ey, lower, upper, &least, &most);
+    distances_to_line(a, b, x, y, ex, ey, lower, upper, &least, &most);
     if (wide)
-        beside_line(a, b, x, y, ex, ey, light->lower, light->upper, &light_least, &light_most);
+        distances_to_line(a, b, x, y, ex, ey, light->lower, light->upper, &light_least, &light_most);
     const bool left = most <= 0 && light_most <= 0;
     if (!(left || (least >= 0 && light_least >= 0)) || shaft->plane_count == 6)
         return;

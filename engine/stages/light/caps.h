@@ -148,8 +148,7 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
 
 /// Lists the first GLINT_CAPS primitives from `from` on that may occlude the light, in the table's order. Returns
 /// their number.
-static int R(look_up_caps)(const R(shadow_tile) * tile, const light_shaft *shaft, uint32_t from,
-                           uint32_t ids[GLINT_CAPS])
+static int R(find_caps)(const R(shadow_tile) * tile, const light_shaft *shaft, uint32_t from, uint32_t ids[GLINT_CAPS])
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     uint32_t stack[WALK_STACK], found[GLINT_NODE_WIDTH];
@@ -196,7 +195,7 @@ static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsign
     R(group_box)(tile, &group, lit, lower, upper);
     make_shaft(lower, upper, &tile->light, &shaft);
     do {
-        count = R(look_up_caps)(tile, &shaft, from, ids);
+        count = R(find_caps)(tile, &shaft, from, ids);
         for (int k = 0; k < count; k++) {
             const glint_prim *prim = &args->geometry->prims[ids[k]];
             const unsigned own = lanes_equal(args->prim + group.at, ids[k]) & lit;

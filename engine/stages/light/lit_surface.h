@@ -155,7 +155,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     const uint32_t id = surface->only ? *surface->only : surface->prim[at];
     if (!surface->only && lanes_equal(surface->prim + at, id) != 0xffff)
         return false;
-    R(look_at)(surface, &call->walk, mixed, id);
+    R(load_prim)(surface, &call->walk, mixed, id);
     R(seen_slot) *slot = R(last_seen)(&call->walk, mixed);
     const glint_prim *prim = slot->prim.prim;
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE, solid = mixed && prim->kind == GLINT_PRIM_SOLID;

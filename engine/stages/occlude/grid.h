@@ -329,7 +329,7 @@ static inline grid_bounds grid_bound(const grid_coords *coords, unsigned lanes)
 }
 
 /// Returns the distance in steps from a position to the interval of bounds.
-static inline vf grid_beside(vf center, vf least, vf most)
+static inline vf grid_distance(vf center, vf least, vf most)
 {
     return f_max(f_max(least - center, center - most), f_set(0));
 }
@@ -374,8 +374,8 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_coords *coords
     for (uint32_t from = run->next; from < run->end && unoccluded; from += VF) {
         const unsigned there = run->end - from < VF ? (1u << (run->end - from)) - 1 : (1u << VF) - 1;
         const vi center = grid_load(grid->center + from), size = grid_load(grid->size + from);
-        const vf du = grid_beside(grid_step(center), bounds.least[0], bounds.most[0]);
-        const vf dv = grid_beside(grid_step(i_shr(center, 16)), bounds.least[1], bounds.most[1]);
+        const vf du = grid_distance(grid_step(center), bounds.least[0], bounds.most[0]);
+        const vf dv = grid_distance(grid_step(i_shr(center, 16)), bounds.least[1], bounds.most[1]);
         const unsigned before = fm_bits(grid_before(size, bounds.w)) & there;
         for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && unoccluded;
              near &= near - 1)

@@ -41,7 +41,7 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
 }
 
 /// Computes the direction to a light at a position, not normalised yet.
-static void come_near(const glint_derivative_source *source, dual_shine *s, int i)
+static void add_distance(const glint_derivative_source *source, dual_shine *s, int i)
 {
     const glint_dual length2 = dual_dot(s->direction, s->direction);
     const double length = sqrt(length2.value), over = 1 / length;
@@ -72,7 +72,7 @@ static dual_shine dual_shine_at(const glint_derivative_light *light, const glint
         normal[c] = dual_at(points->normal[c], points->slope[1][c], i);
     }
     if (!light->directional)
-        come_near(source, &s, i);
+        add_distance(source, &s, i);
     if (light->attenuated) {
         const glint_dual *a = light->coefficients;
         const glint_dual further = dual_mul(s.distance, dual_add(a[1], dual_mul(a[2], s.distance)));

@@ -49,11 +49,11 @@ static int NAME(crossing_sign)(const glint_geometry_table *table, const glint_pr
 {
     const glint_prim *prim = &table->prims[table->prim_count + table->hulls[part->item].first + k];
     NAME(vec3) corner[3];
-    NAME(corners_seen)(prim, origin, table->scale, corner);
+    NAME(relative_corners)(prim, origin, table->scale, corner);
     int orientation = NAME(orientation)(corner, direction), z = NAME(main_axis)(direction);
     if (!orientation)
         return 0;
-    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    NAME(ray_edges) seen = NAME(make_ray_edges)(corner, direction);
     *t = NAME(plane_distance)(table, prim, seen, origin, direction);
     if (!prim->face) {
         REAL w[3];

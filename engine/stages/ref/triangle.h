@@ -2,10 +2,10 @@
 
 static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v.x), NAME(abs)(v.y)), NAME(abs)(v.z)); }
 
-typedef struct NAME(seen_edges) {
+typedef struct NAME(ray_edges) {
     REAL e[3], dz, depth, sum_of_sizes;
     REAL low[2], high[2]; ///< of the corners, along each axis
-} NAME(seen_edges);
+} NAME(ray_edges);
 
 static int NAME(main_axis)(NAME(vec3) d)
 {
@@ -13,12 +13,12 @@ static int NAME(main_axis)(NAME(vec3) d)
     return NAME(abs)(d.z) > NAME(abs)(NAME(component)(d, z)) ? 2 : z;
 }
 
-static NAME(seen_edges) NAME(see_edges)(const NAME(vec3) corner[3], NAME(vec3) d)
+static NAME(ray_edges) NAME(make_ray_edges)(const NAME(vec3) corner[3], NAME(vec3) d)
 {
     int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3;
     REAL dx = NAME(component)(d, x), dy = NAME(component)(d, y), dz = NAME(component)(d, z);
     REAL px[3], py[3], pz[3];
-    NAME(seen_edges) out = { .dz = dz };
+    NAME(ray_edges) out = { .dz = dz };
     for (int j = 0; j < 3; j++) {
         pz[j] = NAME(component)(corner[j], z);
         px[j] = NAME(component)(corner[j], x) * dz - pz[j] * dx;
@@ -38,26 +38,26 @@ static NAME(seen_edges) NAME(see_edges)(const NAME(vec3) corner[3], NAME(vec3) d
     return out;
 }
 
-static REAL NAME(sum_of_edges)(NAME(seen_edges) s) { return (s.e[0] + s.e[1]) + s.e[2]; }
+static REAL NAME(sum_of_edges)(NAME(ray_edges) s) { return (s.e[0] + s.e[1]) + s.e[2]; }
 
-static bool NAME(all_on_one_side)(NAME(seen_edges) s, REAL reach)
+static bool NAME(all_on_one_side)(NAME(ray_edges) s, REAL reach)
 {
     REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
     return least >= -reach || most <= reach;
 }
 
-static bool NAME(between_corners)(NAME(seen_edges) s, REAL reach)
+static bool NAME(between_corners)(NAME(ray_edges) s, REAL reach)
 {
     return s.low[0] <= reach && s.low[1] <= reach && s.high[0] >= -reach && s.high[1] >= -reach;
 }
 
-static bool NAME(passes)(NAME(seen_edges) s)
+static bool NAME(passes)(NAME(ray_edges) s)
 {
     REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
     return least > 0 || most < 0 || ((least == 0 || most == 0) && NAME(between_corners)(s, 0));
 }
 
-static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double scale, NAME(vec3) out[3])
+static void NAME(relative_corners)(const glint_prim *prim, NAME(vec3) from, double scale, NAME(vec3) out[3])
 {
     for (int j = 0; j < 3; j++)
         out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
@@ -65,7 +65,7 @@ static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double s
 
 /// Returns the distance at which a ray crosses the plane of a triangle: the plane of its corners, or one that it
 /// shares.
-static REAL NAME(plane_distance)(const glint_geometry_table *table, const glint_prim *prim, NAME(seen_edges) seen,
+static REAL NAME(plane_distance)(const glint_geometry_table *table, const glint_prim *prim, NAME(ray_edges) seen,
                                  NAME(vec3) origin, NAME(vec3) direction)
 {
     const glint_face *face = prim->face ? &table->faces[prim->face - 1] : NULL;
@@ -94,8 +94,8 @@ static NAME(vec3) NAME(triangle_point)(const glint_surface_args *args, const gli
                                        NAME(vec3) direction, REAL weight[3], REAL *slack)
 {
     NAME(vec3) corner[3], v0 = NAME(rounded)(prim->corner[0]);
-    NAME(corners_seen)(prim, origin, args->scale, corner);
-    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    NAME(relative_corners)(prim, origin, args->scale, corner);
+    NAME(ray_edges) seen = NAME(make_ray_edges)(corner, direction);
     REAL inverse = 1 / NAME(sum_of_edges)(seen);
     for (int j = 0; j < 3; j++)
         weight[j] = seen.e[j] * inverse;
@@ -148,7 +148,7 @@ static bool NAME(in_box)(const NAME(vec3) corner[3], NAME(vec3) point, REAL loos
     return true;
 }
 
-static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(parted) plane, NAME(seen_edges) seen,
+static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(parted) plane, NAME(ray_edges) seen,
                                           const NAME(vec3) corner[3], REAL slack, NAME(vec3) ray)
 {
     REAL r = 0;
@@ -173,8 +173,8 @@ static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_pr
     NAME(vec3) ray = NAME(direction_of)(args->camera, args->direction, i);
     REAL slack = ((const REAL *)args->slack)[i];
     NAME(vec3) corner[3], q = NAME(sub)(point, NAME(rounded)(prim->corner[0])), m = plane.m, sizes = plane.sizes;
-    NAME(corners_seen)(prim, point, args->geometry->scale, corner);
-    NAME(seen_edges) seen = NAME(see_edges)(corner, d);
+    NAME(relative_corners)(prim, point, args->geometry->scale, corner);
+    NAME(ray_edges) seen = NAME(make_ray_edges)(corner, d);
     REAL h = NAME(dot)(m, q);
     REAL rounding = NAME(dot)(sizes, NAME(vec)(NAME(abs)(q.x), NAME(abs)(q.y), NAME(abs)(q.z)));
     REAL bound = ((NAME(abs)(m.x) + NAME(abs)(m.y)) + NAME(abs)(m.z)) * NAME(abs)(slack) + NAME(POINT_SLACK) * rounding;
@@ -217,8 +217,8 @@ static REAL NAME(triangle_t)(const glint_geometry_table *table, const glint_prim
 {
     const glint_occlude_args plane_of = { .geometry = table, .directional = true };
     NAME(vec3) corner[3];
-    NAME(corners_seen)(prim, origin, table->scale, corner);
-    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    NAME(relative_corners)(prim, origin, table->scale, corner);
+    NAME(ray_edges) seen = NAME(make_ray_edges)(corner, direction);
     REAL t = NAME(plane_distance)(table, prim, seen, origin, direction);
     if (!NAME(passes)(seen) || !(t > 0))
         return 0;
@@ -255,8 +255,8 @@ static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_
                                       NAME(largest)(origin));
     REAL rounding, h = NAME(height)(here, prim, origin, &rounding);
     bool begins = !(NAME(abs)(h) > NAME(spread)(here) * slack + rounding);
-    NAME(corners_seen)(prim, origin, table->scale, corner);
-    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    NAME(relative_corners)(prim, origin, table->scale, corner);
+    NAME(ray_edges) seen = NAME(make_ray_edges)(corner, direction);
     REAL distance = NAME(plane_distance)(table, prim, seen, origin, direction);
     bool soon = distance > 0 && distance <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
     bool still_on = distance * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
@@ -287,8 +287,8 @@ static void NAME(vertex)(const glint_vertex_args *args)
         const uint32_t *at = args->shading_points[prim->shading_points].at;
         const glint_shading_point_light *light = args->light[args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1];
         NAME(vec3) corner[3], origin = args->camera ? NAME(rounded)(args->camera->eye) : NAME(load)(args->origin, i);
-        NAME(corners_seen)(prim, origin, args->scale, corner);
-        NAME(seen_edges) seen = NAME(see_edges)(corner, NAME(direction_of)(args->camera, args->direction, i));
+        NAME(relative_corners)(prim, origin, args->scale, corner);
+        NAME(ray_edges) seen = NAME(make_ray_edges)(corner, NAME(direction_of)(args->camera, args->direction, i));
         REAL inverse = 1 / NAME(sum_of_edges)(seen), w[3];
         for (int j = 0; j < 3; j++)
             w[j] = seen.e[j] * inverse;

@@ -284,8 +284,8 @@ INNER void R(begin_walk)(const glint_surface_args *args, R(surface_walk) * walk)
 }
 
 /// Not inlined, so that the result stays in memory, from where it is broadcast to all lanes.
-static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
-                                                       uint32_t id)
+static __attribute__((noinline)) void R(load_other_prim)(const glint_surface_args *args, R(surface_walk) * walk,
+                                                         uint32_t id)
 {
     R(seen_slot) *slot = walk->last = &walk->slots[args->mixed ? id % SEEN_SLOTS : 0];
     walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
@@ -295,10 +295,10 @@ static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args 
     R(see_prim)(args, id, &slot->prim, slot->height);
 }
 
-INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, const bool mixed, uint32_t id)
+INNER void R(load_prim)(const glint_surface_args *args, R(surface_walk) * walk, const bool mixed, uint32_t id)
 {
     if (R(last_seen)(walk, mixed)->prim.id != id)
-        R(look_at_other)(args, walk, id);
+        R(load_other_prim)(args, walk, id);
 }
 
 INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * walk, const R(point_box) * box)
@@ -432,7 +432,7 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         if (!lanes) {
             id = args->prim[at + (unsigned)__builtin_ctz(rest)];
             lanes = lanes_equal(args->prim + at, id) & rest;
-            R(look_at)(args, walk, outputs == R(MIXED), id);
+            R(load_prim)(args, walk, outputs == R(MIXED), id);
             slot = R(last_seen)(walk, outputs == R(MIXED));
         }
         const bool placed =
