@@ -879,8 +879,8 @@ bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *r
 
 // ---- Overlays -----------------------------------------------------------------------------------------------------
 
-/// A label, a colour bar or axes, drawn onto a finished picture's 8-bit or 16-bit values. Shared by reference between
-/// scenes.
+/// A label, a colour bar, axes, an arrow, a line or an arc, drawn onto a finished picture's 8-bit or 16-bit values.
+/// Shared by reference between scenes.
 ///
 /// Only .png files of beauty show overlays; other passes, stored planes and linear files do not. Later overlays cover
 /// earlier ones. No stage reads overlays, so changing one traces no rays. A point is dpi / 72 pixels if the file has
@@ -896,9 +896,20 @@ typedef struct glint_overlay glint_overlay;
 typedef enum glint_overlay_kind {
     GLINT_OVERLAY_LABEL, ///< `text`
     GLINT_OVERLAY_COLORBAR, ///< the colours of a map with numbers next to them; `text` is its title
-    GLINT_OVERLAY_AXES ///< the world's x, y and z directions as the camera sees them, each with its name. With a
+    GLINT_OVERLAY_AXES, ///< the world's x, y and z directions as the camera sees them, each with its name. With a
         ///< `box`: three of its edges as the camera sees them, with numbers along them
+    GLINT_OVERLAY_ARROW, ///< a line between two points of the world, with a head at `to`; `text` is its label
+    GLINT_OVERLAY_LINE, ///< the same without a head; its label is next to its middle
+    GLINT_OVERLAY_ARC ///< the angle between the directions `from` and `to` at `point`; `text` is its label
 } glint_overlay_kind;
+
+/// What is drawn of the part of an arrow, a line or an arc that lies behind surfaces. Surfaces count at any opacity.
+typedef enum glint_hidden {
+    GLINT_HIDDEN_DRAW, ///< the same as in front of surfaces
+    GLINT_HIDDEN_DASH, ///< dashes
+    GLINT_HIDDEN_HIDE ///< nothing; an arrow has no head and no label if its tip is hidden, and a line or an arc no
+        ///< label if its middle is hidden
+} glint_hidden;
 
 /// A table of 256 colours, from the lowest value to the highest.
 typedef enum glint_colormap {
@@ -926,8 +937,8 @@ typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orient
 /// kind.
 typedef struct glint_overlay_desc {
     glint_overlay_kind kind; ///< glint_overlay_set cannot change it
-    /// Label, colour bar: UTF-8, lines separated by newlines; "": none. Without a position, a label's lines that are
-    /// wider than the picture are broken at blanks
+    /// All kinds except axes: UTF-8, lines separated by newlines; "": none. Without a position, a label's lines that
+    /// are wider than the picture are broken at blanks
     char text[GLINT_OVERLAY_TEXT_SIZE];
     /// Position as a fraction of the free space inside the margin: 0 is left or top, 1 right or bottom. Default:
     /// label {0, 0}, colour bar {1, 0.5}, axes {0, 1}
@@ -938,7 +949,9 @@ typedef struct glint_overlay_desc {
     bool has_size; ///< false: a 36th of the picture's height in pixels, at least 10
     double size; ///< size of the letters, points, 1 .. 10000
     bool has_margin; ///< false: half of `size`
-    double margin; ///< distance to the picture's border, points, 0 .. 10000
+    /// Distance to the picture's border; for a label at a point of the world, distance to that point; points,
+    /// 0 .. 10000
+    double margin;
     /// Colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1. Not tone-mapped
     double color[3];
     bool has_background; ///< false: no rectangle is drawn behind it
@@ -967,6 +980,20 @@ typedef struct glint_overlay_desc {
     double sides[3][3]; ///< finite; one may be 0 and then has no axis, the others span a plane
     bool has_values; ///< false: axes show world coordinates, or for a cell lengths along its sides
     double values[2][3]; ///< values at the two corners; finite, different along each side that is not 0; may decrease
+    /// Arrow, line: the two ends in the world, a finite distance apart; where they are equal, nothing is drawn. Arc:
+    /// two directions, not zero, need not be unit; opposite ones have a half circle that faces the camera. Default
+    /// {0, 0, 0}, {1, 0, 0}; arc {1, 0, 0}, {0, 1, 0}
+    double from[3], to[3];
+    bool has_point; ///< label. true: next to `point`, instead of `at` and `position`
+    /// Label, arc: a point in the world. The text of a label, an arrow, a line or an arc tries eight positions around
+    /// its place, and takes the first inside the picture that covers no earlier text, bar or axes and if possible no
+    /// arrow, line or arc; if there is none, the first position
+    double point[3];
+    bool has_radius; ///< arc. false: a twelfth of the picture's height at the distance of `point`
+    double radius; ///< arc: world units, > 0
+    bool has_width; ///< arrow, line, arc. false: an eighth of `size`
+    double width; ///< thickness, points, 0 .. 10000; at least one pixel is drawn
+    glint_hidden hidden; ///< arrow, line, arc; default draw
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_overlay_desc;
 
@@ -1295,8 +1322,8 @@ glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_ren
 /// Frees the plan; images rendered from it stay valid. NULL: nothing.
 void glint_plan_destroy(glint_plan *plan);
 /// Calls `warns` for each overlay that the plan's picture cannot show as described: text outside the picture, lines
-/// wider than the picture, letters missing from the font. The message names the overlay. dpi: of the file; 0: not
-/// set.
+/// wider than the picture, letters missing from the font, points behind the camera, an arrow of no length. The message
+/// names the overlay. dpi: of the file; 0: not set.
 glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
                                        void *context, glint_error *error);
 /// Returns the description of the frame as planned, with the passes added that others require. Belongs to the plan.

@@ -46,7 +46,7 @@ for files in 'engine/plan/*.[ch]' 'engine/effects/*/plan*.[ch]' 'engine/effects/
 done
 layer engine/reuse engine/program engine/plan engine/film $stages $base
 layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
-layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/film $base
+layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/overlay engine/film $base
 includes 'engine/effects/*/*.[ch]' "$effects" engine/frame engine/tile engine/program engine/reuse engine/plan engine/geometry engine/scene \
     engine/film $stages engine/stages/light $base
 layer engine/file engine/text engine/overlay engine/film engine/stages $base

@@ -1,4 +1,4 @@
-// glint.label, glint.colorbar, glint.axes
+// glint.label, glint.colorbar, glint.axes, glint.arrow, glint.line, glint.arc
 #include <string.h>
 
 #include "bindings/value/glintL.h"
@@ -59,7 +59,7 @@ static void push_at(lua_State *L, const void *desc)
 {
     const desc_type *d = desc;
     const double x = 2 * d->at[0], y = 2 * d->at[1];
-    if (d->has_position)
+    if (d->has_position || d->has_point)
         lua_pushnil(L);
     else if (x == (int)x && y == (int)y)
         lua_pushstring(L, PLACES[(int)y][(int)x]);
@@ -276,6 +276,7 @@ static void push_values(lua_State *L, const void *desc) { push_corners(L, ((cons
 // ---- The objects ----
 
 static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
+static const char *const HIDDEN[] = { "draw", "dash", "hide", NULL };
 
 #define HEX(color, shift) ("0123456789abcdef"[(color) >> (shift) & 15])
 
@@ -333,6 +334,9 @@ static void push_scale(lua_State *L, const void *desc) { lua_pushstring(L, SCALE
 #define EVERY_OVERLAY \
     {.name = "at", GLINTL_CUSTOM(read_at, push_at)}, \
     {.name = "position", GLINTL_CUSTOM(read_position, push_position), .set_offset = AT(has_position)}, \
+    LOOKS
+
+#define LOOKS \
     {.name = "size", .type = GLINT_TYPE_NUMBER, .offset = AT(size), .set_offset = AT(has_size)}, \
     {.name = "margin", .type = GLINT_TYPE_NUMBER, .offset = AT(margin), .set_offset = AT(has_margin)}, \
     {.name = "color", .type = GLINT_TYPE_COLOR, .offset = AT(color)}, \
@@ -340,11 +344,17 @@ static void push_scale(lua_State *L, const void *desc) { lua_pushstring(L, SCALE
     {.name = "opacity", .type = GLINT_TYPE_NUMBER, .offset = AT(opacity)}, \
     {.name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(name)}
 
+#define CURVE \
+    {.name = "label", GLINTL_CUSTOM(read_text, push_text)}, \
+    {.name = "width", .type = GLINT_TYPE_NUMBER, .offset = AT(width), .set_offset = AT(has_width)}, \
+    {.name = "hidden", .type = GLINT_TYPE_CHOICE, .offset = AT(hidden), .names = HIDDEN}
+
 #define LENGTH {.name = "length", .type = GLINT_TYPE_NUMBER, .offset = AT(length), .set_offset = AT(has_length)}
 // clang-format on
 
 static const glintL_field LABEL_FIELDS[] = {
     { .name = "text", GLINTL_CUSTOM(read_text, push_text), .required = true },
+    { .name = "at_point", .type = GLINT_TYPE_VECTOR, .offset = AT(point), .set_offset = AT(has_point) },
     EVERY_OVERLAY,
     { .name = NULL },
 };
@@ -371,25 +381,48 @@ static const glintL_field AXES_FIELDS[] = {
     { .name = NULL },
 };
 
+static const glintL_field LINE_FIELDS[] = {
+    { .name = "from", .type = GLINT_TYPE_VECTOR, .offset = AT(from), .required = true },
+    { .name = "to", .type = GLINT_TYPE_VECTOR, .offset = AT(to), .required = true },
+    CURVE,
+    LOOKS,
+    { .name = NULL },
+};
+
+static const glintL_field ARC_FIELDS[] = {
+    { .name = "at", .type = GLINT_TYPE_VECTOR, .offset = AT(point), .required = true },
+    { .name = "from", .type = GLINT_TYPE_DIRECTION, .offset = AT(from), .required = true },
+    { .name = "to", .type = GLINT_TYPE_DIRECTION, .offset = AT(to), .required = true },
+    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .set_offset = AT(has_radius) },
+    CURVE,
+    LOOKS,
+    { .name = NULL },
+};
+
 static const glintL_variant VARIANTS[] = {
     [GLINT_OVERLAY_LABEL] = { .name = "label", .fields = LABEL_FIELDS },
     [GLINT_OVERLAY_COLORBAR] = { .name = "colorbar", .fields = COLORBAR_FIELDS },
     [GLINT_OVERLAY_AXES] = { .name = "axes", .fields = AXES_FIELDS },
+    [GLINT_OVERLAY_ARROW] = { .name = "arrow", .fields = LINE_FIELDS },
+    [GLINT_OVERLAY_LINE] = { .name = "line", .fields = LINE_FIELDS },
+    [GLINT_OVERLAY_ARC] = { .name = "arc", .fields = ARC_FIELDS },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_overlay_get(object)->kind]; }
 
 GLINTL_FUNCTIONS(overlay);
 
-// Lets the last assignment decide between at and position.
+// Lets the last assignment decide between at, position and at_point.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;
-    if (strcmp(field->name, "at") != 0)
-        return;
-    if (d->has_box)
+    const bool is_at = strcmp(field->name, "at") == 0;
+    if (is_at && d->has_box)
         glintL_error(L, "axes.at: only for axes without a box; axes with a box lie along its edges");
-    d->has_position = false;
+    if (is_at || strcmp(field->name, "at_point") == 0)
+        d->has_position = false;
+    if (d->kind == GLINT_OVERLAY_LABEL && (is_at || strcmp(field->name, "position") == 0))
+        d->has_point = false;
 }
 
 static void begin(int kind, void *desc) { *(desc_type *)desc = glint_overlay_desc_default((glint_overlay_kind)kind); }
@@ -402,6 +435,8 @@ static void given(lua_State *L, const glintL_variant *of, const void *desc)
         glintL_error(L, "%s: at or position expected, got both", of->name);
     if (!lua_isnil(L, -1) && d->has_box)
         glintL_error(L, "axes: at or box expected, got both");
+    if (d->has_point && (!lua_isnil(L, -1) || d->has_position))
+        glintL_error(L, "label: at_point or %s expected, got both", d->has_position ? "position" : "at");
     lua_pop(L, 1);
 }
 

@@ -78,7 +78,7 @@ static bool has_object(lua_State *L, int value)
 
 static void refuse_member(lua_State *L, int value, const char *path)
 {
-    const char *expected = "shape, light, label, colorbar or axes";
+    const char *expected = "shape, light or overlay";
     if (lua_istable(L, value) && has_object(L, value))
         glintL_error(L, "%s: %s expected, got a list; put its objects into the scene directly, or into a glint.group", path, expected);
     if (lua_istable(L, value) && !glintL_is_module(L, value))

@@ -557,7 +557,7 @@ function difference:close() end
 ---@return glint.difference
 function glint.difference(fields) end
 
--- ---- Overlays: labels, colour bars, axes ----
+-- ---- Overlays: labels, colour bars, axes, arrows ----
 
 --- Drawn over a finished picture: only in .png files of beauty, not in other passes and not in .pfm, .npy and .exr.
 --- Lengths in points are dpi / 72 pixels if `dpi` is set, otherwise pixels.
@@ -573,6 +573,7 @@ function glint.difference(fields) end
 
 ---@class glint.label_fields: glint.overlay_fields
 ---@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing
+---@field at_point? glint.vec3  a point in the world that it stands next to, in place of `at`; `margin` is its distance from there. Default nil
 
 --- A text over the picture. A label set in frame(t) changes the picture's key, but nothing is rendered again for it.
 ---@class glint.label: glint.label_fields
@@ -623,7 +624,61 @@ function axes:close() end
 ---@return glint.axes
 function glint.axes(fields) end
 
----@alias glint.overlay glint.label|glint.colorbar|glint.axes
+---@class glint.curve_fields
+---@field label? string  as the text of a label; "" shows nothing. Default ""
+---@field width? number  of the line, points. Default nil: an eighth of `size`
+---@field hidden? "draw"|"dash"|"hide"  how the part behind surfaces is drawn. Default "draw"
+---@field size? number  of the letters, points, 1 .. 10000. Default nil: a 36th of the picture's height, 10 pixels at least
+---@field margin? number  from the line to the label, points. Default nil: half of `size`
+---@field color? glint.color  of the line and the letters; not toned. Default 1
+---@field background? glint.color  of a rectangle behind the label. Default nil: none
+---@field opacity? number  of the background, 0 .. 1. Default 1
+---@field name? string  for messages, at most 63 bytes. Default ""
+
+---@class glint.line_fields: glint.curve_fields
+---@field from glint.vec3  where it begins in the world
+---@field to glint.vec3  where it ends
+
+--- An arrow between two points of the world, drawn over the picture, with its label beyond its tip.
+---@class glint.arrow: glint.line_fields
+local arrow = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function arrow:close() end
+
+---@param fields glint.line_fields
+---@return glint.arrow
+function glint.arrow(fields) end
+
+--- A line between two points of the world, drawn over the picture, with its label next to its middle.
+---@class glint.line: glint.line_fields
+local line = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function line:close() end
+
+---@param fields glint.line_fields
+---@return glint.line
+function glint.line(fields) end
+
+---@class glint.arc_fields: glint.curve_fields
+---@field at glint.vec3  the corner of the angle in the world
+---@field from glint.vec3  a direction from there
+---@field to glint.vec3  another one
+---@field radius? number  world units. Default nil: a twelfth of the picture's height
+
+--- The angle between two directions at a point, drawn over the picture as part of a circle.
+---@class glint.arc: glint.arc_fields
+local arc = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function arc:close() end
+
+---@param fields glint.arc_fields
+---@return glint.arc
+function glint.arc(fields) end
+
+---@alias glint.overlay glint.label|glint.colorbar|glint.axes|glint.arrow|glint.line|glint.arc
 
 -- ---- Scene ----
 

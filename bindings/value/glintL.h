@@ -305,7 +305,7 @@ typedef struct glintL_class {
 /// The members of the class that point to these functions.
 #define GLINTL_FUNCTION_MEMBERS .get = get, .set = set, .retain = retain, .release = release, .create = create
 
-#define GLINTL_DESC_SIZE 2048
+#define GLINTL_DESC_SIZE 2304
 
 /// Returns the class of a type from the metatable made by glintL_open_class.
 const glintL_class *glintL_class_of(lua_State *L, const char *type);
@@ -343,7 +343,7 @@ void glintL_open_light(lua_State *L);
 void glintL_open_camera(lua_State *L);
 void glintL_open_transform(lua_State *L);
 void glintL_open_shape(lua_State *L);
-void glintL_open_overlay(lua_State *L); ///< label, colorbar and axes
+void glintL_open_overlay(lua_State *L); ///< label, colorbar, axes, arrow, line and arc
 void glintL_open_scene(lua_State *L);
 void glintL_open_image(lua_State *L);
 void glintL_open_math(lua_State *L);

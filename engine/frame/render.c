@@ -347,6 +347,20 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
     return GLINT_OK;
 }
 
+/// Lays the plan's overlays over a picture. On failure the picture is released.
+static glint_status cover(const glint_renderer *renderer, const glint_plan *plan, glint_image **image, glint_error *error)
+{
+    const double *r = plan->desc.region;
+    glint_overlays *overlays = NULL;
+    glint_status status = glint_hidden_find(renderer->stages, plan, &overlays, error);
+    if (status)
+        glint_image_release(*image);
+    else
+        status = glint_image_cover(*image, overlays, (int)r[0], (int)r[1], image, error);
+    glint_overlays_release(overlays);
+    return status;
+}
+
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error)
 {
@@ -363,7 +377,7 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
         whole = part;
     }
     if (!status && plan->overlays)
-        status = glint_image_cover(whole, plan->overlays, (int)r[0], (int)r[1], &whole, error);
+        status = cover(renderer, plan, &whole, error);
     if (!status)
         *out = whole;
     return status;

@@ -17,6 +17,10 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
 glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                 glint_frame_stats *stats, glint_error *error);
 
+/// Returns the plan's overlays, of which it has some, with the parts of their curves that surfaces hide. The caller owns
+/// a reference, even on failure unless *out is NULL.
+glint_status glint_hidden_find(const glint_stages *stages, const glint_plan *plan, glint_overlays **out, glint_error *error);
+
 /// Adds the times, rays and work of another part of the frame. The stages are the stages of `to`; `share` of their
 /// work belongs to the other part.
 void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share);

@@ -4,6 +4,7 @@
 #include "engine/text/font.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SHOWN 40 ///< characters of a text shown in a message, at most
@@ -25,13 +26,12 @@ static void warn(const check *c, const char *message)
 /// Writes the kind of an overlay and its name, or the beginning of its text.
 static void describe(check *c)
 {
-    static const char *const kinds[] = { "label", "colorbar", "axes" };
     const glint_overlay_desc *desc = c->layout->desc;
     const char *name = desc->name[0] ? desc->name : desc->text, *end = name;
     for (int i = 0; i < SHOWN && *end && *end != '\n'; i++)
         glint_font_code(&end);
-    snprintf(c->label, sizeof c->label, *name ? "%s '%.*s%s'" : "%s", kinds[desc->kind], (int)(end - name), name,
-             *end ? "..." : "");
+    snprintf(c->label, sizeof c->label, *name ? "%s '%.*s%s'" : "%s", glint_overlay_kinds[desc->kind], (int)(end - name),
+             name, *end ? "..." : "");
 }
 
 /// Warns about the first character of a text that the font lacks.
@@ -72,18 +72,21 @@ static void check_position(const check *c)
 {
     const glint_layout *l = c->layout;
     const int sides[2] = { l->overlays->width, l->overlays->height };
+    const char *it = l->desc->kind >= GLINT_OVERLAY_ARROW ? "its label" : "it";
     char message[300];
     int beyond = 0, length = 0;
     for (int i = 0; i < 2; i++) {
         if (l->corner[i] >= sides[i] || l->corner[i] + l->size[i] <= 0) {
-            warn(c, "it lies outside the picture");
+            snprintf(message, sizeof message, "%s lies outside the picture", it);
+            warn(c, message);
             return;
         }
         const int before = -l->corner[i], behind = l->corner[i] + l->size[i] - sides[i];
         beyond = before > beyond ? before : beyond;
         beyond = behind > beyond ? behind : beyond;
     }
-    if (l->desc->kind != GLINT_OVERLAY_LABEL || beyond <= l->em / 4) // the space around letters
+    const bool is_text = l->desc->kind == GLINT_OVERLAY_LABEL || glint_overlay_points(l->desc);
+    if (!is_text || beyond <= l->em / 4) // the space around letters
         return;
     const char *line = find_widest(l, &length);
     if (!l->desc->has_position && l->size[0] > sides[0])
@@ -91,18 +94,46 @@ static void check_position(const check *c)
                                           "picture to show all of it",
                  length < 100 ? length : 100, line, l->size[0], sides[0]);
     else
-        snprintf(message, sizeof message, "it extends %d pixels beyond the border of the picture", beyond);
+        snprintf(message, sizeof message, "%s extends %d pixels beyond the border of the picture", it, beyond);
     warn(c, message);
+}
+
+/// Warns about an arrow, line, arc or label at a point that is not shown, or only in part.
+static void check_pointer(const check *c)
+{
+    const glint_layout *l = c->layout;
+    const glint_pointer *p = &l->place->pointer;
+    const glint_overlay_kind kind = l->desc->kind;
+    const bool is_line = kind == GLINT_OVERLAY_ARROW || kind == GLINT_OVERLAY_LINE;
+    char message[200];
+    if (is_line && glint_pointer_is_point(l->desc)) {
+        snprintf(message, sizeof message, "to: expected a point other than from {%.15g, %.15g, %.15g}; it is not drawn", l->desc->from[0],
+                 l->desc->from[1], l->desc->from[2]);
+        warn(c, message);
+    } else if (p->behind[0] || p->behind[1]) {
+        const char *end = kind == GLINT_OVERLAY_ARC ? "at" : !is_line ? "at_point" : p->behind[0] ? "from" : "to";
+        snprintf(message, sizeof message, "%s: expected a point in front of the camera; %s not drawn", end,
+                 p->count ? "the part behind it is" : "it is");
+        warn(c, message);
+    } else if (!p->count) {
+        warn(c, "it lies outside the picture");
+    } else if (l->place->has_rect) {
+        check_position(c);
+    }
 }
 
 glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
                                   void *context, glint_error *error)
 {
     glint_letters *letters;
+    glint_place *places = NULL;
     glint_status status = glint_letters_open(&letters, error);
+    if (status)
+        return status;
+    status = glint_layout_places(overlays, &places, error);
     for (size_t i = 0; i < overlays->count && !status; i++) {
         const glint_overlay_desc *desc = &overlays->of[i];
-        glint_layout layout = glint_layout_begin(overlays, desc, dpi, letters, NULL);
+        glint_layout layout = glint_layout_begin_at(overlays, i, dpi, letters, places, NULL);
         check c = { .layout = &layout, .warns = warns, .context = context };
         describe(&c);
         check_letters(&c, desc->text);
@@ -111,9 +142,12 @@ glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, vo
         if (desc->has_box)
             continue;
         glint_layout_place(&layout, dpi);
-        check_position(&c);
+        if (glint_overlay_points(desc))
+            check_pointer(&c);
+        else
+            check_position(&c);
     }
-    if (!status)
-        glint_letters_close(letters);
+    free(places);
+    glint_letters_close(letters);
     return status;
 }

@@ -3,12 +3,16 @@
 #define GLINT_OVERLAY_LAYOUT_H
 
 #include "engine/overlay/overlay.h"
+#include "engine/overlay/pointer.h"
 #include "engine/text/typeface.h"
 
 typedef struct glint_layout {
     const glint_overlays *overlays;
     const glint_overlay_desc *desc;
     glint_stamps *stamps;
+    glint_place *places; ///< of all overlays; NULL: none of them points. Borrowed
+    glint_place *place; ///< of this one
+    const glint_hidden_parts *hidden; ///< of its curve; NULL: none
     glint_typeface typeface;
     double em; ///< font size, pixels
     double length; ///< of a colour bar or an axis, pixels
@@ -18,10 +22,17 @@ typedef struct glint_layout {
     char text[GLINT_OVERLAY_TEXT_SIZE]; ///< of a label, wrapped
 } glint_layout;
 
+/// Returns the places of a frame's overlays. *out is NULL if none of them points; otherwise freed by the caller.
+glint_status glint_layout_places(const glint_overlays *overlays, glint_place **out, glint_error *error);
+/// Begins overlay number `i` of a frame. letters: borrowed; NULL: the bitmap font. places: as glint_layout_places.
+glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, double dpi, glint_letters *letters,
+                                   glint_place *places, glint_stamps *stamps);
 /// Begins an overlay. letters  borrowed; NULL: the bitmap font.
 glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,
                                 glint_stamps *stamps);
-/// Measures an overlay and finds its position; not for axes at a box.
+/// Converts a length in points to pixels, at most the largest side of a picture.
+double glint_layout_pixels(double points, double dpi);
+/// Measures an overlay and finds its position, or the position of the text of one that points; not for axes at a box.
 void glint_layout_place(glint_layout *layout, double dpi);
 
 /// Returns the width of the widest line, and the number of lines.
@@ -37,9 +48,26 @@ void glint_layout_fill(const glint_layout *layout, int x, int y, int width, int 
 /// out of memory.
 bool glint_layout_mask(const glint_layout *layout, int x, int y, int width, int height, glint_stamp *stamp);
 
+typedef struct glint_stroke {
+    double from[2], offset[2]; ///< one end, and the vector to the other; pixels from the picture's upper left corner
+} glint_stroke;
+
+/// Strokes with round ends and an arrowhead.
+typedef struct glint_strokes {
+    glint_stroke *of; ///< freed by the caller
+    size_t count, capacity;
+    double half; ///< half of their width; pixels
+    bool has_head;
+    double head[3][2]; ///< the corners of the arrowhead; pixels
+    bool lost; ///< out of memory: some are missing
+} glint_strokes;
+
+void glint_strokes_add(glint_strokes *strokes, const double from[2], const double to[2]);
+/// Draws the strokes as one antialiased shape, clipped to the picture.
+void glint_layout_strokes(const glint_layout *layout, const glint_strokes *strokes, const double color[3]);
 /// Draws an antialiased line with round ends, clipped to the picture.
 /// from   pixels from the picture's upper left corner.
-/// way    vector to the other end; pixels.
+/// offset vector to the other end; pixels.
 /// half   half the thickness; pixels.
 void glint_layout_line(const glint_layout *layout, const double from[2], const double offset[2], double half,
                        const double color[3]);

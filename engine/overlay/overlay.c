@@ -16,9 +16,13 @@ struct glint_overlay {
 
 #define POINTS_MAX 10000.0
 
+const char *const glint_overlay_kinds[] = { "label", "colorbar", "axes", "arrow", "line", "arc" };
+
 glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
 {
     glint_overlay_desc desc = { .kind = kind, .color = { 1, 1, 1 }, .opacity = 1, .high = 1, .names = { "x", "y", "z" } };
+    desc.from[0] = kind == GLINT_OVERLAY_ARC;
+    desc.to[kind == GLINT_OVERLAY_ARC] = 1;
     if (kind == GLINT_OVERLAY_COLORBAR) {
         desc.at[0] = 1;
         desc.at[1] = 0.5;
@@ -178,11 +182,35 @@ static glint_status check_box(const glint_overlay_desc *desc, glint_error *error
     return status;
 }
 
+/// Checks the points and directions of the world that an overlay has.
+static glint_status check_pointer(const glint_overlay_desc *desc, glint_error *error)
+{
+    const bool is_arc = desc->kind == GLINT_OVERLAY_ARC;
+    glint_status (*const check_end)(const char *, const double *, glint_error *) = is_arc ? glint_check_direction : glint_check_vector;
+    glint_status status = GLINT_OK;
+    if (is_arc || desc->has_point)
+        status = glint_check_vector(is_arc ? "at" : "at_point", desc->point, error);
+    if (status || desc->kind == GLINT_OVERLAY_LABEL)
+        return status;
+    status = check_end("from", desc->from, error);
+    if (!status)
+        status = check_end("to", desc->to, error);
+    for (int i = 0; i < 3 && !status && !is_arc; i++)
+        status = check_span("to", desc->from, desc->to, i, error);
+    if (!status && is_arc && desc->has_radius && !(desc->radius > 0 && isfinite(desc->radius)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
+    if (!status && desc->has_width)
+        status = glint_check_range("width", desc->width, 0, POINTS_MAX, "points 0 .. 10000", error);
+    if (!status && (unsigned)desc->hidden > GLINT_HIDDEN_HIDE)
+        status = glint_fail(error, GLINT_ERR_INVALID, "hidden: draw, dash or hide expected");
+    return status;
+}
+
 static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 {
-    if ((unsigned)desc->kind > GLINT_OVERLAY_AXES)
+    if ((unsigned)desc->kind > GLINT_OVERLAY_ARC)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such overlay");
-    glint_status status = check_drawn("text", desc->text, sizeof desc->text, error);
+    glint_status status = check_drawn(desc->kind < GLINT_OVERLAY_ARROW ? "text" : "label", desc->text, sizeof desc->text, error);
     for (int i = 0; i < 3 && !status; i++)
         status = check_drawn("names", desc->names[i], sizeof desc->names[i], error);
     if (!status)
@@ -202,6 +230,8 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
                                                       "describe");
     if (!status && desc->kind == GLINT_OVERLAY_AXES && desc->has_box)
         status = check_box(desc, error);
+    if (!status && glint_overlay_points(desc))
+        status = check_pointer(desc, error);
     return status;
 }
 

@@ -1,9 +1,12 @@
-/// Overlays, drawn over a finished picture: labels, colour bars, axes. Internal.
+/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs. Internal.
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key
 ///     layout.c     the position of each, in stamps; colorbar.c, axes.c, box_axes.c: their parts
 ///     marks.c      the round numbers along colour bars and axes
+///     pointer.c    the curves of arrows, lines and arcs in the picture, and positions for texts next to them
+///     drawing.c    texts and rectangles, as stamps
+///     strokes.c    straight strokes and arrowheads, as stamps
 ///     stamp.c      stamps on rows of codes
 ///     faults.c     warnings about overlays that the picture cannot show
 #ifndef GLINT_OVERLAY_H
@@ -25,6 +28,12 @@ typedef struct glint_overlays_camera {
     double pixel_offset; ///< position of the sample in its pixel, 0 .. 1
 } glint_overlays_camera;
 
+/// The parts of a curve that surfaces hide: `count` intervals of the parameter of glint_pointer_at, ascending.
+typedef struct glint_hidden_parts {
+    size_t count;
+    double (*of)[2]; ///< owned
+} glint_hidden_parts;
+
 /// The overlays of one frame. Immutable, reference counted; any thread.
 typedef struct glint_overlays {
     atomic_int references;
@@ -32,9 +41,18 @@ typedef struct glint_overlays {
     double view[3][3]; ///< unit vectors to the right, up and away from the eye
     glint_overlays_camera camera;
     glint_key letters; ///< see glint_letters_key
+    glint_hidden_parts *hidden; ///< of each overlay; NULL: none are hidden, or none are known yet. Owned
     size_t count;
     glint_overlay_desc of[]; ///< in drawing order
 } glint_overlays;
+
+extern const char *const glint_overlay_kinds[]; ///< "label", ...
+
+/// Returns whether an overlay points at a place in the world: arrow, line, arc, label at a point.
+static inline bool glint_overlay_points(const glint_overlay_desc *desc)
+{
+    return desc->kind >= GLINT_OVERLAY_ARROW || (desc->kind == GLINT_OVERLAY_LABEL && desc->has_point);
+}
 
 /// Projects a point to the picture, pixels from the upper left corner. Returns its distance along the view.
 double glint_overlays_project(const glint_overlays_camera *camera, const double p[3], double out[2]);
@@ -42,6 +60,8 @@ double glint_overlays_project(const glint_overlays_camera *camera, const double 
 /// Copies the scene's overlays. *out is NULL if there are none, or none is visible.
 glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const glint_overlays_camera *camera,
                                  glint_overlays **out, glint_error *error);
+/// Returns a copy with `hidden` of `count` empty rows, to be filled in by the caller. NULL: out of memory.
+glint_overlays *glint_overlays_copy(const glint_overlays *overlays);
 glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: no effect
 void glint_overlays_release(glint_overlays *overlays); ///< NULL: no effect
 /// Extends a key by everything that the overlays' pixels depend on, except the codes below them and the file's dpi.

@@ -44,6 +44,7 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
     overlays->width = width;
     overlays->height = height;
     overlays->letters = font;
+    overlays->hidden = NULL;
     overlays->count = 0;
     for (int i = 0; i < 3; i++)
         vec_normalize(overlays->view[i], camera->view[i]);
@@ -57,6 +58,21 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
     return GLINT_OK;
 }
 
+glint_overlays *glint_overlays_copy(const glint_overlays *overlays)
+{
+    const size_t size = sizeof *overlays + overlays->count * sizeof *overlays->of;
+    glint_overlays *copy = malloc(size);
+    if (!copy)
+        return NULL;
+    memcpy(copy, overlays, size);
+    atomic_init(&copy->references, 1);
+    copy->hidden = calloc(overlays->count, sizeof *copy->hidden);
+    if (copy->hidden)
+        return copy;
+    free(copy);
+    return NULL;
+}
+
 glint_overlays *glint_overlays_retain(glint_overlays *overlays)
 {
     if (overlays)
@@ -66,8 +82,12 @@ glint_overlays *glint_overlays_retain(glint_overlays *overlays)
 
 void glint_overlays_release(glint_overlays *overlays)
 {
-    if (overlays && atomic_fetch_sub_explicit(&overlays->references, 1, memory_order_acq_rel) == 1)
-        free(overlays);
+    if (!overlays || atomic_fetch_sub_explicit(&overlays->references, 1, memory_order_acq_rel) > 1)
+        return;
+    for (size_t i = 0; overlays->hidden && i < overlays->count; i++)
+        free(overlays->hidden[i].of);
+    free(overlays->hidden);
+    free(overlays);
 }
 
 #define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
@@ -83,8 +103,7 @@ static glint_key position_key(const glint_overlay_desc *d, glint_key key)
     return glint_key_add_string(key, d->text);
 }
 
-/// Extends the key by the box's corners in the camera's view and the numbers of its axes.
-static glint_key box_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
+static glint_key camera_key(const glint_overlays *overlays, glint_key key)
 {
     const glint_overlays_camera *c = &overlays->camera;
     const double seen[] = { c->orthographic, c->eye[0], c->eye[1], c->eye[2], c->pixel_offset };
@@ -92,6 +111,25 @@ static glint_key box_key(const glint_overlays *overlays, const glint_overlay_des
     ADD(key, c->view);
     if (c->span[0] != overlays->width || c->span[1] != overlays->height)
         ADD(key, c->span);
+    return key;
+}
+
+/// Extends the key by the camera and the world points of an overlay that points. The geometry that may hide parts of it
+/// is in the picture's key.
+static glint_key pointer_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
+{
+    const double look[] = { d->has_point, d->has_radius, d->radius, d->has_width, d->width, d->hidden };
+    key = camera_key(overlays, key);
+    ADD(key, d->from);
+    ADD(key, d->to);
+    ADD(key, d->point);
+    return ADD(key, look);
+}
+
+/// Extends the key by the box's corners in the camera's view and the numbers of its axes.
+static glint_key box_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
+{
+    key = camera_key(overlays, key);
     ADD(key, d->box);
     if (d->has_sides)
         ADD(key, d->sides);
@@ -111,6 +149,8 @@ glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
             ADD(key, d->is_log);
         if (d->kind == GLINT_OVERLAY_COLORBAR && d->has_colors)
             ADD(key, d->colors);
+        if (glint_overlay_points(d))
+            key = pointer_key(overlays, d, key);
         if (d->kind != GLINT_OVERLAY_AXES)
             continue;
         ADD(key, overlays->view);

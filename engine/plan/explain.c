@@ -254,15 +254,14 @@ static void veil(explainer *e)
 
 static void overlays(explainer *e, const glint_scene *scene)
 {
-    static const char *const kinds[] = { "label", "colorbar", "axes" };
     char caller[2 * GLINT_NAME_SIZE];
     begin(e, "drawn over the picture");
     for (size_t i = 0; i < glint_scene_overlay_count(scene); i++) {
         const glint_overlay_desc *desc = glint_overlay_get(glint_scene_overlay_at(scene, i));
         if (desc->name[0])
-            snprintf(caller, sizeof caller, "%s '%s'", kinds[desc->kind], desc->name);
+            snprintf(caller, sizeof caller, "%s '%s'", glint_overlay_kinds[desc->kind], desc->name);
         else
-            snprintf(caller, sizeof caller, "%s #%zu", kinds[desc->kind], i + 1);
+            snprintf(caller, sizeof caller, "%s #%zu", glint_overlay_kinds[desc->kind], i + 1);
         called_by(e, caller);
     }
     end(e);

@@ -84,6 +84,8 @@ static glint_overlay_desc label_at(double x, double y, const char *text)
     return desc;
 }
 
+#define KEYS 36 ///< overlays of test_key
+
 /// A pixel is white where the glyph has a bit, otherwise the picture shows. 13 pixels are the font's own size; at 144
 /// dpi a point has two pixels.
 static void test_letters(void **state)
@@ -449,8 +451,9 @@ static void test_key(void **state)
 {
     (void)state;
     glint_overlay_desc bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR), axes = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
-    glint_overlay_desc changed[22];
-    for (size_t i = 0; i < 22; i++)
+    const glint_overlay_desc arrow = glint_overlay_desc_default(GLINT_OVERLAY_ARROW), arc = glint_overlay_desc_default(GLINT_OVERLAY_ARC);
+    glint_overlay_desc changed[KEYS];
+    for (size_t i = 0; i < KEYS; i++)
         changed[i] = bar;
     changed[1].text[0] = 'x';
     changed[2].at[0] = 0.3;
@@ -473,8 +476,22 @@ static void test_key(void **state)
     changed[19] = changed[18], changed[19].box[1][0] = 3;
     changed[20] = changed[18], changed[20].has_values = true, changed[20].values[1][0] = 2;
     changed[21] = changed[20], changed[21].values[1][0] = 3;
-    char keys[22][33];
-    for (size_t i = 0; i < 22; i++) {
+    changed[22] = arrow;
+    changed[23] = arrow, changed[23].from[1] = 1;
+    changed[24] = arrow, changed[24].to[2] = 1;
+    changed[25] = arrow, changed[25].has_width = true;
+    changed[26] = changed[25], changed[26].width = 3;
+    changed[27] = arrow, changed[27].hidden = GLINT_HIDDEN_DASH;
+    changed[28] = arrow, changed[28].kind = GLINT_OVERLAY_LINE;
+    changed[29] = arc;
+    changed[30] = arc, changed[30].point[0] = 1;
+    changed[31] = arc, changed[31].has_radius = true, changed[31].radius = 1;
+    changed[32] = changed[31], changed[32].radius = 2;
+    changed[33] = label_at(0, 0, "a");
+    changed[34] = changed[33], changed[34].has_point = true;
+    changed[35] = changed[34], changed[35].point[2] = -1;
+    char keys[KEYS][33];
+    for (size_t i = 0; i < KEYS; i++) {
         world w = make_world(&changed[i], 0);
         glint_plan *plan = NULL;
         assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);

@@ -61,9 +61,12 @@ local FIELDS = {
   camera = { "eye", "at", "direction", "up", "fov", "projection", "height", "pixel_offset", "aperture", "focus", "blades", "blade_rotation",
     "shutter", "shutter_times" },
   ambient_occlusion = { "distance" },
-  label = { "text", "at", "position", "size", "margin", "color", "background", "opacity" },
+  label = { "text", "at", "at_point", "position", "size", "margin", "color", "background", "opacity" },
   colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
   axes = { "labels", "length", "at", "position", "size", "box", "values" },
+  arrow = { "from", "to", "label", "width", "hidden", "size", "margin", "color", "background" },
+  line = { "from", "to", "label", "width", "hidden", "opacity" },
+  arc = { "at", "from", "to", "radius", "label", "width", "hidden" },
 }
 for _, name in ipairs { "material", "point_light", "directional_light", "spot_light", "disk_light", "polygon_light", "sphere_light" } do
   FIELDS[name] = {}
@@ -97,6 +100,8 @@ local GOOD = {
   polygon_light = { vertices = { { 0, 5, 0 }, { 1, 5, 0 }, { 0, 5, 1 } } }, sphere_light = { position = { 0, 5, 0 }, radius = 1 },
   material = {}, camera = { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
   ambient_occlusion = { samples = 2 }, label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
+  arrow = { from = { 0, 0, 0 }, to = { 2, 1, 0 }, label = "a" }, line = { from = { -2, 0, 0 }, to = { 2, 1, 0 } },
+  arc = { at = { 0, 1, 0 }, from = { 1, 0, 0 }, to = { 0, 1, 0 } },
 }
 
 -- Shapes that can be parts of a CSG shape, and some that cannot.

@@ -51,7 +51,7 @@ function tests.objects_of_a_scene_have_no_names()
   wrong("scene.lights" .. cure, "glint.scene { lights = { position = { 0, 5, 0 } } }")
   wrong("scene.objects" .. cure, "glint.scene { objects = { ball } }")
   wrong("scene.ball" .. cure, "glint.scene { ball = ball }")
-  wrong("scene[2]: shape, light, label, colorbar or axes expected, got a list; put its objects into the scene directly",
+  wrong("scene[2]: shape, light or overlay expected, got a list; put its objects into the scene directly",
     "glint.scene { lamp, { ball } }")
 end
 
