@@ -99,6 +99,7 @@ picture spotlights --size 320x180
 picture toon_teapot --frames 1
 picture trajectory --frames 9
 picture translucent --samples 4
+picture vectors
 picture wood_and_marble
 picture workshop --samples 9
 
