@@ -274,8 +274,34 @@ function tests.ends_on_surfaces()
   check(count({ 0, 0, 0 }, { 0, 0, -1.5 }, { 0.1, 0, -1.6 }, "draw") > 0, "drawn through")
 end
 
--- A region shows its part of the picture, and passes do not have overlays.
-function tests.regions_and_passes()
+-- A moved camera or shape gives the picture that a new scene gives, with refined edges too.
+function tests.changes()
+  local function make(x, eye)
+    local ball = glint.sphere { center = { x, 0, 1 }, radius = 0.7 }
+    local line = glint.line { from = { -2, -0.5, 0 }, to = { 2, 0.5, 0 }, hidden = "hide", label = "a", width = 3 }
+    local camera = glint.camera { eye = eye, at = { 0, 0, 0 } }
+    return glint.scene { camera = camera, ambient = 0.3, ball, line }, ball, line, camera
+  end
+  for _, options in ipairs { {}, { samples = 4, adaptive = 0.05 } } do
+    local scene, ball, line, camera = make(0, { 0, 0, 9 })
+    local before = draw(scene, nil, options)
+    ball.center, camera.eye = { 1, 0, 1 }, { 1, 1, 8 }
+    local after, fresh = draw(scene, nil, options), draw(make(1, { 1, 1, 8 }), nil, options)
+    line.hidden = "draw"
+    local through, wrong, moved, drawn = draw(scene, nil, options), 0, 0, 0
+    for y = 0, HEIGHT - 1 do
+      for x = 0, WIDTH - 1 do
+        if after(x, y) ~= fresh(x, y) then wrong = wrong + 1 end
+        if after(x, y) ~= before(x, y) then moved = moved + 1 end
+        if after(x, y) ~= through(x, y) then drawn = drawn + 1 end
+      end
+    end
+    check(wrong == 0 and moved > 100 and drawn > 50, "%d pixels are wrong, %d moved, %d drawn through", wrong, moved, drawn)
+  end
+end
+
+-- A region shows its part of the picture.
+function tests.regions()
   local camera = CAMERAS.perspective
   local scene = scene_of(camera, { glint.sphere { center = { 0, 0, 0 }, radius = 1 },
     glint.arrow { from = { -2, -1, -1 }, to = { 2, 1, -1 }, label = "a", hidden = "dash" }, glint.label { text = "b", at_point = { 0, 1, 0 } } })
