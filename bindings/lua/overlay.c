@@ -276,7 +276,7 @@ static void push_values(lua_State *L, const void *desc) { push_corners(L, ((cons
 // ---- The objects ----
 
 static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
-static const char *const HIDDEN[] = { "draw", "dash", "hide", NULL };
+static const char *const HIDDEN[] = { "drawn", "dashed", "none", NULL };
 
 #define HEX(color, shift) ("0123456789abcdef"[(color) >> (shift) & 15])
 

@@ -627,7 +627,7 @@ function glint.axes(fields) end
 ---@class glint.curve_fields
 ---@field label? string  as the text of a label; "" shows nothing. Default ""
 ---@field width? number  of the line, points. Default nil: an eighth of `size`
----@field hidden? "draw"|"dash"|"hide"  how the part behind surfaces is drawn. Default "draw"
+---@field hidden? "drawn"|"dashed"|"none"  how the part behind surfaces is drawn. Default "drawn"
 ---@field size? number  of the letters, points, 1 .. 10000. Default nil: a 36th of the picture's height, 10 pixels at least
 ---@field margin? number  from the line to the label, points. Default nil: half of `size`
 ---@field color? glint.color  of the line and the letters; not toned. Default 1

@@ -39,7 +39,7 @@ cat >still.lua <<'LUA'
 local glint, S = require "glint", require "helper"
 S.scene:add(glint.label { text = "A\nB", background = "red" })
 S.scene:add(glint.colorbar { map = "magma", low = 0, high = 1, title = "C" })
-S.scene:add(glint.arrow { from = { -3, -1, -3 }, to = { 3, 1, -3 }, label = "D", hidden = "dash" })
+S.scene:add(glint.arrow { from = { -3, -1, -3 }, to = { 3, 1, -3 }, label = "D", hidden = "dashed" })
 S.scene:add(glint.axes {})
 S.scene:add(glint.ambient_occlusion { samples = 1 })
 return glint.animation { scene = S.scene, frames = 1, width = 16, height = 12, frame = function() end }

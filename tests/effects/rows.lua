@@ -104,7 +104,7 @@ return {
   { name = "axes_of_a_box", file = "png", functions = { "^glint_box_axes_draw$", "^glint_layout_line$" },
     call = function(glint, _, scene) scene:add(glint.axes { box = { { -8, -2, -3 }, { 7, 4, 4 } } }) end },
   { name = "arrow", file = "png", functions = { "^glint_layout_strokes$", "^glint_pointer_find$" },
-    call = function(glint, _, scene) scene:add(glint.arrow { from = { 0, 0, 0 }, to = { 0, 6, 0 }, hidden = "dash" }) end },
+    call = function(glint, _, scene) scene:add(glint.arrow { from = { 0, 0, 0 }, to = { 0, 6, 0 }, hidden = "dashed" }) end },
   { name = "colormap", file = "png", functions = { "^glint_colormap_table$" }, options = "--passes depth --colormap viridis" },
   { name = "npy", file = "npy", functions = { "^glint_npy_" } },
   { name = "exr", file = "exr", library = "OpenEXR", functions = { "^glint_exr_" } },

@@ -61,9 +61,9 @@ local tests = {}
 
 function tests.fields()
   local a = glint.arrow { from = { 0, 0, 0 }, to = { 1, 2, 3 } }
-  check(a.from == vec(0, 0, 0) and a.to.z == 3 and a.label == "" and a.width == nil and a.hidden == "draw", "defaults of an arrow")
-  a.label, a.width, a.hidden, a.from = "n", 2, "dash", { 1, 1, 1 }
-  check(a.label == "n" and a.width == 2 and a.hidden == "dash" and a.from.x == 1, "they can be set")
+  check(a.from == vec(0, 0, 0) and a.to.z == 3 and a.label == "" and a.width == nil and a.hidden == "drawn", "defaults of an arrow")
+  a.label, a.width, a.hidden, a.from = "n", 2, "dashed", { 1, 1, 1 }
+  check(a.label == "n" and a.width == 2 and a.hidden == "dashed" and a.from.x == 1, "they can be set")
   local arc = glint.arc { at = { 1, 0, 0 }, from = { 2, 0, 0 }, to = { 0, 3, 0 }, name = "phi" }
   check(arc.at.x == 1 and arc.from.x == 2 and arc.radius == nil and tostring(arc) == "arc 'phi'", "of an arc")
   local l = glint.label { text = "a", at_point = { 1, 2, 3 } }
@@ -86,7 +86,7 @@ function tests.errors()
   raises("line.from[3]: finite number expected, got nan", glint.line, { from = { 0, 0, 0 / 0 }, to = to })
   raises("line.to: ends at a finite distance expected, got -1e+308 to 1e+308 along y", glint.line, { from = { 0, -1e308, 0 }, to = { 0, 1e308, 0 } })
   raises("arrow.width: points 0 .. 10000 expected, got -1", glint.arrow, { from = from, to = to, width = -1 })
-  raises("arrow.hidden: \"draw\", \"dash\" or \"hide\" expected", glint.arrow, { from = from, to = to, hidden = "dashed" })
+  raises("arrow.hidden: \"drawn\", \"dashed\" or \"none\" expected", glint.arrow, { from = from, to = to, hidden = "dotted" })
   raises("arrow.lable: no such field; did you mean 'label'?", glint.arrow, { from = from, to = to, lable = "n" })
   raises("arrow.at: no such field", glint.arrow, { from = from, to = to, at = "top" })
   raises("arrow.label: at most 383 bytes expected, got 384", glint.arrow, { from = from, to = to, label = ("a"):rep(384) })
@@ -231,7 +231,7 @@ function tests.hidden_parts()
   }
   local from, to = vec(-2.4, -0.9, -0.8), vec(2.2, 1.1, -0.3)
   for name, camera in pairs(CAMERAS) do
-    local line = glint.line { from = from, to = to, width = 3, hidden = "hide" }
+    local line = glint.line { from = from, to = to, width = 3, hidden = "none" }
     local scene = scene_of(camera, shapes)
     scene:add(line)
     local forward = (vec(0.3, 0.2, 0) - camera.eye):unit()
@@ -252,9 +252,9 @@ function tests.hidden_parts()
     end
     check(wrong == 0 and hidden > 50 and shown > 50, "%s: %d points are wrong of %d hidden, %d shown", name, wrong, hidden, shown)
     local hide = lit(at)
-    line.hidden = "draw"
+    line.hidden = "drawn"
     local all = lit((draw(scene)))
-    line.hidden = "dash"
+    line.hidden = "dashed"
     local dashed = lit((draw(scene)))
     check(hide < dashed and dashed < all, "%s: %d pixels, %d with dashes, %d in all", name, hide, dashed, all)
   end
@@ -269,16 +269,16 @@ function tests.ends_on_surfaces()
       glint.arrow { from = from, to = to, label = "n", hidden = hidden } }))))
   end
   local up = vec(0, 0.6, 0.8)
-  check(count({ 0, 0, 0 }, up, 2 * up, "hide") == count({ 0, 0, 0 }, up, 2 * up, "draw"), "a normal is visible")
-  check(count({ 0, 0, 0 }, { 0, 0, -1.5 }, { 0.1, 0, -1.6 }, "hide") == 0, "an arrow behind the sphere")
-  check(count({ 0, 0, 0 }, { 0, 0, -1.5 }, { 0.1, 0, -1.6 }, "draw") > 0, "drawn through")
+  check(count({ 0, 0, 0 }, up, 2 * up, "none") == count({ 0, 0, 0 }, up, 2 * up, "drawn"), "a normal is visible")
+  check(count({ 0, 0, 0 }, { 0, 0, -1.5 }, { 0.1, 0, -1.6 }, "none") == 0, "an arrow behind the sphere")
+  check(count({ 0, 0, 0 }, { 0, 0, -1.5 }, { 0.1, 0, -1.6 }, "drawn") > 0, "drawn through")
 end
 
 -- A moved camera or shape gives the picture that a new scene gives, with refined edges too.
 function tests.changes()
   local function make(x, eye)
     local ball = glint.sphere { center = { x, 0, 1 }, radius = 0.7 }
-    local line = glint.line { from = { -2, -0.5, 0 }, to = { 2, 0.5, 0 }, hidden = "hide", label = "a", width = 3 }
+    local line = glint.line { from = { -2, -0.5, 0 }, to = { 2, 0.5, 0 }, hidden = "none", label = "a", width = 3 }
     local camera = glint.camera { eye = eye, at = { 0, 0, 0 } }
     return glint.scene { camera = camera, ambient = 0.3, ball, line }, ball, line, camera
   end
@@ -287,7 +287,7 @@ function tests.changes()
     local before = draw(scene, nil, options)
     ball.center, camera.eye = { 1, 0, 1 }, { 1, 1, 8 }
     local after, fresh = draw(scene, nil, options), draw(make(1, { 1, 1, 8 }), nil, options)
-    line.hidden = "draw"
+    line.hidden = "drawn"
     local through, wrong, moved, drawn = draw(scene, nil, options), 0, 0, 0
     for y = 0, HEIGHT - 1 do
       for x = 0, WIDTH - 1 do
@@ -304,7 +304,7 @@ end
 function tests.regions()
   local camera = CAMERAS.perspective
   local scene = scene_of(camera, { glint.sphere { center = { 0, 0, 0 }, radius = 1 },
-    glint.arrow { from = { -2, -1, -1 }, to = { 2, 1, -1 }, label = "a", hidden = "dash" }, glint.label { text = "b", at_point = { 0, 1, 0 } } })
+    glint.arrow { from = { -2, -1, -1 }, to = { 2, 1, -1 }, label = "a", hidden = "dashed" }, glint.label { text = "b", at_point = { 0, 1, 0 } } })
   local whole = draw(scene)
   local part = draw(scene, nil, { region = { 70, 40, 100, 60 } })
   local wrong = 0
@@ -336,16 +336,16 @@ function tests.warnings()
     local text = warnings_of(object, camera)
     check(text:find(want, 1, true), "%s: %s expected, got %s", object, want, text)
   end
-  warns("arrow 'n': to: another point than from {1, 2, 3} expected, so it is not drawn", 'arrow { from = { 1, 2, 3 }, to = { 1, 2, 3 }, name = "n" }')
-  warns("line: from: a point in front of the camera expected, so the part behind it is not drawn", "line { from = { 0, 0, 20 }, to = { 1, 0, 0 } }")
-  warns("arrow 'v': to: a point in front of the camera expected, so the part behind it is not drawn",
+  warns("arrow 'n': to: expected a point other than from {1, 2, 3}; it is not drawn", 'arrow { from = { 1, 2, 3 }, to = { 1, 2, 3 }, name = "n" }')
+  warns("line: from: expected a point in front of the camera; the part behind it is not drawn", "line { from = { 0, 0, 20 }, to = { 1, 0, 0 } }")
+  warns("arrow 'v': to: expected a point in front of the camera; the part behind it is not drawn",
     'arrow { from = { 1, 0, 0 }, to = { 0, 0, 20 }, label = "v" }')
-  warns("arrow: from: a point in front of the camera expected, so it is not drawn", "arrow { from = { 0, 0, 20 }, to = { 1, 0, 30 } }")
-  warns("arc: at: a point in front of the camera expected, so it is not drawn",
+  warns("arrow: from: expected a point in front of the camera; it is not drawn", "arrow { from = { 0, 0, 20 }, to = { 1, 0, 30 } }")
+  warns("arc: at: expected a point in front of the camera; it is not drawn",
     "arc { at = { 0, 0, 20 }, from = { 1, 0, 0 }, to = { 0, 1, 0 } }")
-  warns("label 'a': at_point: a point in front of the camera expected, so it is not drawn", 'label { text = "a", at_point = { 0, 0, 9 } }')
-  warns("line: it lies outside of the picture", "line { from = { 900, 0, 0 }, to = { 900, 1, 0 } }")
-  warns("line: from: a point in front of the camera", "line { from = { 0, 0, 20 }, to = { 1, 0, 0 } }",
+  warns("label 'a': at_point: expected a point in front of the camera; it is not drawn", 'label { text = "a", at_point = { 0, 0, 9 } }')
+  warns("line: it lies outside the picture", "line { from = { 900, 0, 0 }, to = { 900, 1, 0 } }")
+  warns("line: from: expected a point in front of the camera", "line { from = { 0, 0, 20 }, to = { 1, 0, 0 } }",
     'eye = { 0, 0, 9 }, at = { 0, 0, 0 }, projection = "orthographic", height = 9')
   check(not warnings_of("arrow { from = { 0, 0, 0 }, to = { 1, 1, 0 } }"):find "arrow", "none of an arrow in the picture")
 end
@@ -356,7 +356,7 @@ function tests.extremes()
   local curves = {}
   for i, from in ipairs(places) do
     for k, to in ipairs(places) do
-      for _, hidden in ipairs { "draw", "dash", "hide" } do
+      for _, hidden in ipairs { "drawn", "dashed", "none" } do
         local made = i % 2 == 0 and glint.line or glint.arrow
         curves[#curves + 1] = made { from = from, to = to, hidden = hidden, width = ({ 0, 1, 10000 })[k % 3 + 1], label = "a",
           size = k % 2 == 0 and 10000 or nil }
@@ -364,7 +364,7 @@ function tests.extremes()
     end
     curves[#curves + 1] = glint.label { text = "Wide\nγ\n\n", at_point = from, margin = i % 2 == 0 and 10000 or 0, background = 1 }
     for _, radius in ipairs { 1e-300, 1, 1e300 } do
-      curves[#curves + 1] = glint.arc { at = from, from = { 1e-300, 0, 0 }, to = { -1e300, 0, 0 }, radius = radius, hidden = "dash", label = "a" }
+      curves[#curves + 1] = glint.arc { at = from, from = { 1e-300, 0, 0 }, to = { -1e300, 0, 0 }, radius = radius, hidden = "dashed", label = "a" }
       curves[#curves + 1] = glint.arc { at = from, from = { 0, 0, 1 }, to = { 0, 0, 1 }, label = "a" }
     end
   end

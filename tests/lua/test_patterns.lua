@@ -244,7 +244,8 @@ function tests.errors_tell_the_place_and_the_cure()
   raises("or \"#rrggbb\" expected, got string \"hello\"", function() return "hello" end)
   raises("expected from the function, got a table that is not a vector", function(p) return { p.x, 2 } end)
   raises("pattern: one value expected from the function, got 3; a colour is glint.vector", function(p) return p.x, p.y, p.z end)
-  raises("math.min of a symbol: its value is not known, because the function runs once for all points; write glint.min", function(p) return math.min(p.x, 1) end)
+  raises("math.min of a symbol: its value is not known, because the function runs once for all points; write glint.min",
+    function(p) return math.min(p.x, 1) end)
   raises("a symbol has no value yet; write glint.exp", function(p) return math.exp(p.x) end)
   raises("a symbol has no value yet; write a % b", function(p) return math.fmod(p.x, 1) end)
   raises("a table cannot be indexed by a value that depends on the point; use glint.select", function(p)
@@ -289,7 +290,8 @@ end
 local function is_found(f)
   local line = debug.getinfo(f, "S").linedefined
   local good, message = pcall(function() return #glint.pattern(f) end)
-  check(not good and tostring(message):find "the Lua function gives [-%d.e+]+, the compiled program [-%d.e+]+ at %(.*%): does the function have an `if`, `and` or `or`", "%s", message)
+  local says = "the Lua function gives [-%d.e+]+, the compiled program [-%d.e+]+ at %(.*%): does the function have an `if`, `and` or `or`"
+  check(not good and tostring(message):find(says), "%s", message)
   check(tostring(message):find(HERE .. ":" .. line .. ": ", 1, true), "line %d: %s", line, message)
 end
 
