@@ -90,7 +90,7 @@ static int argument_of(const cli_option *option)
 
 static bool is_number(const char *word) { return *word && word[strspn(word, "0123456789")] == '\0'; }
 
-// Returns whether a second use of the option is an error, because both values would be meant.
+// Returns whether a second use of the option is an error: the user may have meant both values.
 static bool is_given_once(const cli_option *option)
 {
     static const char *const names[] = { "output", "frames", "shard", "passes", "region" };

@@ -5,7 +5,8 @@
 
 #include "bindings/value/glintL.h"
 
-/// The names in a constructor, whose table is the first argument, and free positions on its stack.
+/// The fields of a constructor that makes many objects from one table, its first argument. `object` and `each` name
+/// the objects in messages. The other fields are positions on the stack, reserved by the constructor.
 typedef struct glintL_many {
     const char *object, *each; ///< "spheres", "sphere"
     int material, materials, index; ///< positions of the fields

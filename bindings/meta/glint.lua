@@ -791,7 +791,7 @@ function glint.scene(fields) end
 ---@field dpi? number  pixels an inch where a .png is printed, 0 .. 1e6. Default 0: not said
 ---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth"; "all": every one but d:NAME. Default none
----@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": this part of the frame alone, in pixels from the top left, with the bits of the whole. Default: all
+---@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": only this part of the frame, in pixels from the top left, with the same bits as in the whole frame. Default: all
 
 ---@class glint.save_options
 ---@field bits? 8|16  a channel of a .png. Default 8
@@ -927,8 +927,8 @@ function glint.sweep(fields) end
 
 -- A function that describes a material at a point, or the light that it reflects from one lamp. It is called once per
 -- frame with symbols instead of numbers. The operations on symbols are recorded as a program, which runs at the speed
--- of a kernel and returns the bits of plain Lua. Loops and calls are unrolled. Variables outside may change between
--- frames. Symbols cannot be compared: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, with a hint. `if`, `and`
+-- of a kernel and returns the same bits as plain Lua. Loops and calls are unrolled. Variables outside may change
+-- between frames. Symbols cannot be compared: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, with a hint. `if`, `and`
 -- and `or` cannot raise, so plain Lua also runs each new function at 64 points and must return the program's results. A
 -- branch that no point takes goes undetected.
 

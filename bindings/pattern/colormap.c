@@ -11,7 +11,7 @@
 const char *const glintL_colormaps[] = { "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
 _Static_assert(sizeof glintL_colormaps / sizeof *glintL_colormaps == GLINT_COLORMAP_COUNT + 1, "a name each");
 
-static const char TEXTURES; // its address is the registry's key of the textures made so far, by number
+static const char TEXTURES; // its address is the registry key for the textures made so far, by colormap
 
 // Makes a texture of one row from a table of sRGB colours. Between texels it interpolates linear light.
 static glint_status make_texture(uint8_t rgb[ENTRIES][3], glint_texture **out, glint_error *error)

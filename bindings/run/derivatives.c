@@ -6,7 +6,7 @@
 
 #define PI 0x1.921fb54442d18p+1
 
-static const char LIST; // its address is the registry's key of the current frame's list
+static const char LIST; // its address is the registry key for the current frame's list
 
 bool glintL_wants_variable(const glintL_run *run, const char *name)
 {

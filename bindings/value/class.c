@@ -4,7 +4,7 @@
 
 #include "bindings/value/glintL.h"
 
-static const char LISTED; // its address is the registry's key of the table for glint._fields()
+static const char LISTED; // its address is the registry key for the table for glint._fields()
 
 typedef union description { // of any object
     max_align_t align;

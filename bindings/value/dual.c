@@ -6,7 +6,7 @@
 
 #include "bindings/value/glintL.h"
 
-static const char VARIABLES; // its address is the registry's key of the list of the variables' names
+static const char VARIABLES; // its address is the registry key for the list of the variables' names
 static const char SLOPED; // the same for the userdata that store slopes, as weak keys
 
 // ---- Variables ----

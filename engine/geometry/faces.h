@@ -20,7 +20,8 @@ void glint_place_normal(const glint_placing *placing, const double n[3], double 
 /// Computes the plane through a point, perpendicular to a normal of any length, from as few numbers as possible: if
 /// the normal is along an axis, only from the point's coordinate on that axis.
 void glint_face_init(glint_face *face, const glint_placing *placing, const double normal[3], const double point[3]);
-/// Includes a surface within lower .. upper in the face's bounds; in its own space no coordinate is beyond +-own.
+/// Extends the magnitude of the face, the bound for its rounding errors, to a surface within lower .. upper. In its
+/// own space, the surface is within -own .. own.
 void glint_face_bound(glint_face *face, const glint_placing *placing, const double lower[3], const double upper[3],
                       const double own[3]);
 

@@ -124,7 +124,8 @@ static inline bool glint_prim_in_tree(const glint_prim *prim)
     return prim->filter_bound != GLINT_REPEATED && glint_prim_bounded(prim);
 }
 
-/// geometry/boxes.c: sets the filter's sphere around a primitive: its own, its box's, or a smaller one.
+/// geometry/boxes.c: sets the bounding sphere of a primitive for the filter. For a sphere this is the sphere itself,
+/// otherwise the sphere around its box or, for a solid, a smaller one.
 void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim);
 /// Computes the filter's data about the axis of a solid with such a sphere.
 void glint_prim_place_axis(const glint_geometry_table *table, const glint_prim *prim, glint_solid *solid);

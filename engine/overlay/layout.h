@@ -37,8 +37,8 @@ void glint_layout_place(glint_layout *layout, double dpi);
 
 /// Returns the width of the widest line, and the number of lines.
 int glint_layout_measure(const glint_layout *layout, const char *text, int *lines);
-/// Draws the lines of a text from x, y on. Each is placed at the share `align`, 0 .. 1, of the space that it leaves
-/// free in `width`.
+/// Draws the lines of a text; the top left of the first is x, y. `align` is 0 to align each line on the left of
+/// `width`, 0.5 to centre it, and 1 to align it on the right.
 void glint_layout_text(const glint_layout *layout, const char *text, int x, int y, int width, double align,
                        const double color[3]);
 /// Fills a rectangle, clipped to the picture.

@@ -23,7 +23,7 @@
 typedef struct glint_overlays_camera {
     bool orthographic;
     double eye[3];
-    double view[3][3]; ///< to the right and up: half a pixel each; away from the eye: unit
+    double view[3][3]; ///< right and up, half a pixel long; away from the eye, unit length
     double span[2]; ///< see glint_plan_camera
     double pixel_offset; ///< position of the sample in its pixel, 0 .. 1
 } glint_overlays_camera;

@@ -12,7 +12,7 @@ typedef struct glint_split_field {
     glint_key like; ///< of the program and its inputs, except for its numbers; all zero: no program
     uint32_t number_count;
     double *numbers; ///< owned: the numbers in the last frame
-    bool *changed, *now; ///< owned: numbers that have ever changed; numbers that changed in this frame
+    bool *changed, *now; ///< owned: whether each number has ever changed, and has changed in this frame
     glint_split *split; ///< owned; NULL: none of its numbers changes
     /// Positions of the cached values, among the numbers or booleans of a sample
     uint32_t slot[GLINT_PROGRAM_OUTPUTS_MAX];

@@ -1,4 +1,4 @@
--- Bytes as choices: a function, as a pattern and as a shader. The program must give the bits of plain Lua. Where a
+-- Bytes as choices: a function, as a pattern and as a shader. The program must give the same bits as plain Lua. Where a
 -- material or a background accepts it, a picture is rendered, or refused with a message.
 local glint = require "glint"
 

@@ -93,7 +93,7 @@ end
 check(same, "a cue beyond everything changes nothing")
 check(covered, "a cue before everything leaves its colour, and the background where nothing is hit")
 
--- The colour follows the background. Alpha excludes the background, but not the cue.
+-- By default the cue has the colour of the background. With alpha, the background is black, but the cue stays.
 scene = make "perspective"
 scene.depth_cue = { near = near, far = far }
 local follows = render(scene)

@@ -114,7 +114,7 @@ function tests.codes_are_not_decoded()
   check(r == 128 or r == 127, "128 expected, got %d", r)
 end
 
--- A texture has the light and the highlight of its material.
+-- A white texture is lit like a white material, with the same highlight.
 function tests.it_is_lit_as_its_colour()
   write("white.txt", "")
   local white = png.new(1, 1)

@@ -79,7 +79,7 @@ function tests.minus_0_is_0()
   check(minus == lit(0.0), "as 0")
 end
 
--- A cap or a base is at one end of the coordinates from base to top, and so in one row of a texture.
+-- v runs from the base to the top of a shape. It is constant on a cap or base, which shows one row of a texture.
 function tests.ends_are_in_one_row()
   local halves = glint.pattern(function(_, s) return glint.floor(2 * glint.fract(s.uv.v)) end)
   local function count(shape) -- pixels of the lower and upper halves, from above, where the end hides everything else

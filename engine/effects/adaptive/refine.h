@@ -1,10 +1,11 @@
-/// The data of a base for adaptive sampling: the pixels of a tile that need all samples, and the pixels that
+/// Adaptive sampling: chooses the pixels of a tile that need all samples, and stores the border pixels that
 /// neighbouring tiles compare. Internal.
 ///
-/// A frame with adaptive sampling has two steps: a base, with one sample in the middle of each pixel, and all samples
-/// for the pixels chosen here. Each pixel has the bits of the one or of the other. The pixels of one tile are
-/// compared as soon as it is rendered, those at borders of tiles when all tiles are (effects/adaptive/choose.h), so
-/// that the choice does not depend on tiles, threads or the cache.
+/// A frame with adaptive sampling has two steps. The first, the base, takes one sample in the middle of each pixel. The
+/// second takes all samples for the pixels chosen here. Every pixel is bit-identical to that of a frame with one sample
+/// or of a frame with all samples. Pixels within a tile are compared as soon as the tile is rendered. Pixels at the
+/// borders of tiles are compared when all tiles are rendered (effects/adaptive/choose.h), so that the choice does not
+/// depend on tiles, threads or the cache.
 ///
 /// Two of eight neighbours are both chosen if they show two objects, or one object and nothing; if their normals are
 /// more than 25.8 degrees apart; or if their pixel values differ by more than the threshold. This difference is the

@@ -42,7 +42,8 @@ static double share_of(const glint_plan *plan, double distance)
     return plan->depth_cue.on && distance < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
 }
 
-/// Computes both shares from the hits of the current sample, before any other rays are followed.
+/// Computes the share of the cue and the transmittance from the first hits of the current sample, before any other
+/// rays are traced.
 static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     const glint_plan *plan = frame->plan;

@@ -26,7 +26,7 @@ typedef enum result { TO_SUMS, TO_TOTALS, TO_PLANES } result;
 /// The part of a batch that a light reaches: `count` entries from `first` on, including unlit ones between.
 typedef struct reached {
     uint32_t first, count;
-    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< lit lanes of each entry of the batch
+    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< for each entry of the batch, the lanes that the light reaches
 } reached;
 
 static void find_reached(const batch *b, const uint16_t *lit, reached *out)

@@ -29,7 +29,7 @@ typedef struct glint_shading_points_cached {
     size_t reserved; ///< bytes of the budget
 } glint_shading_points_cached;
 
-/// Called before a frame: keeps the light if it has the plan's key, otherwise allocates memory.
+/// Prepares for a frame: reuses the cached light if its key is the plan's, otherwise allocates memory.
 glint_status glint_shading_points_begin(glint_shading_points_cached *shading_points, const glint_plan *plan,
                                         glint_reuse *reuse, glint_error *error);
 void glint_shading_points_clear(glint_shading_points_cached *shading_points, glint_reuse *reuse);

@@ -182,7 +182,8 @@ static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candid
 }
 
 /// Opens the root: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns the
-/// number of candidates. may: the groups that each one's box may show in.
+/// number of candidates. may: for each
+/// candidate, the groups in which its box may be visible.
 static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t may[], screen_entry *stack,
                         int *height)
 {

@@ -30,8 +30,8 @@ typedef struct R(cast_leaf) {
     const glint_node *node;
     unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
-    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile that each triangle may show in, see screen_cells
-    R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< groups that triangles may show in
+    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< where each triangle may be visible: see screen_cells
+    R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< groups in which triangles may be visible
     uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the slot of the triangle
     int groups;
 } R(cast_leaf);
@@ -74,8 +74,8 @@ static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(ca
         }
 }
 
-/// Computes the pixels of the tile that each triangle may show in; for a triangle seen edge-on, the pixels of its
-/// box. Returns the slots of `mask` that show in any pixel.
+/// Computes the pixels of the tile in which each triangle may be visible; for a triangle seen edge-on, the pixels of
+/// its box. Returns the slots of `mask` that may be visible in any pixel.
 static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_screen *seen, unsigned mask,
                                   R(cast_leaf) * leaf)
 {
@@ -105,7 +105,7 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     return mask | edge_on;
 }
 
-/// Finds the cells that a triangle may show in, for pixels at any position; edge-on, the cells of its box. Returns
+/// Finds the cells in which a triangle may be visible, for any pixel position; edge-on, the cells of its box. Returns
 /// false if there are none.
 static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, const node_on_screen *seen, int slot,
                                         screen_cells *out)
@@ -310,7 +310,7 @@ INNER void R(find_groups_of_triangle)(const R(tile_cast) * tile, const bool gath
     leaf->groups = n;
 }
 
-/// Returns the groups that the triangle in a slot may show in.
+/// Returns the groups in which the triangle in a slot may be visible.
 INNER uint64_t R(groups_of_triangle)(const R(tile_cast) * tile, const bool gathered, const R(cast_leaf) * leaf,
                                      const node_on_screen *seen, int slot)
 {

@@ -1,4 +1,4 @@
-// slot: a primitive in a slot of a node, other than a triangle, against the groups of a tile that it may show in.
+// slot: a primitive in a slot of a node, except a triangle, against the groups of a tile in which it may be visible.
 // Contract: stages.h, cast.
 #ifndef GLINT_CAST_SLOT_H
 #define GLINT_CAST_SLOT_H

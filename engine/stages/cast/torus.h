@@ -6,8 +6,8 @@
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// Returns the position of points relative to the torus: below 0 inside. *beyond: the remaining factor of the
-/// quartic, above 0.
+/// Returns the factor of the quartic whose sign tells the sides of the torus apart: below 0 inside. *beyond: the
+/// other factor, above 0 everywhere.
 INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
 {
     const vr one = r_set(1), round = r_sqrt(k[0] * k[0] + k[1] * k[1]), near = round - one, far = round + one;

@@ -111,7 +111,7 @@ typedef struct glint_cast_args {
 
 typedef struct glint_raster_entry {
     uint32_t prim; ///< a triangle
-    uint8_t x0, y0, x1, y1; ///< the pixels of the tile that it may show in, inclusive
+    uint8_t x0, y0, x1, y1; ///< the pixels of the tile in which it may be visible, inclusive
     float depth; ///< lower bound of t * scale over all hits
 } glint_raster_entry;
 

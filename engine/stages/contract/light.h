@@ -175,9 +175,9 @@ typedef struct glint_occlude_args {
     void *scratch; ///< area lights: GLINT_OCCLUDE_SCRATCH bytes of memory; NULL: none, and scenes with many occluders
         ///< take longer
     const glint_point_box *box; ///< written by surface: around all lit points, perhaps also others; NULL: unknown
-    uint16_t *unoccluded[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes without an occluder
-    uint64_t *rays; ///< added to: lit lanes; for area lights, the lanes that no test of the whole light has settled
-    float *visible; ///< out, caps: the visible share of the light in lit lanes, 0 in others; `unoccluded` then has
+    uint16_t *unoccluded[GLINT_LIGHT_CHUNK]; ///< out: the lanes of `lit` without an occluder
+    uint64_t *rays; ///< added to: lanes of `lit`; for area lights, those that no test of the whole light decides
+    float *visible; ///< out, caps: the visible share of the light in lanes of `lit`, 0 in others; `unoccluded` then has
     ///< the lanes with a share above 0. The table has only spheres and planes, and lamp[0] is the light around
     ///< `position`; its samples are ignored. NULL: no caps
     uint64_t *overlaps; ///< caps, added to: pairs of a point and a primitive that were tested

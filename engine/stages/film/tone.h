@@ -133,7 +133,7 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     vi rgb = i_set(0);
     for (uint32_t g = 0; g < args->group_count; g++) {
         const bool last = ++column == args->groups_across;
-        const bool spill = !last && args->active[g + 1] == 0xffff; // the next group will be written over it
+        const bool spill = !last && args->active[g + 1] == 0xffff; // the next group overwrites the spill
         for (int i = 0; i < GLINT_GROUP && args->active[g]; i += VF) {
             const unsigned active = args->active[g] >> i & all;
             vf beauty[3], x[3];

@@ -1,5 +1,5 @@
-// cover: the groups of a tile that a candidate may show in, those that it fills, and those in which another candidate
-// hides it. Each group is tested by the ray through its middle, with bounds for its other rays. Float and
+// cover: the groups of a tile in which a candidate may be visible, those that it fills, and those in which another
+// candidate hides it. Each group is tested by the ray through its middle, with bounds for its other rays. Float and
 // conservative, including rounding and NaN: uncertain cases are left to the pixels. Contract: stages.h, cast.
 #ifndef GLINT_INDEX_COVER_H
 #define GLINT_INDEX_COVER_H
@@ -133,7 +133,7 @@ INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * 
     return fm_bits(fm_and(f_lt(f_set(0), inner), f_lt(most, f_set(0))));
 }
 
-/// Returns the groups that the candidate may show in; *sure: those that it fills.
+/// Returns the groups in which the candidate may be visible; *sure: those that it fills.
 INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at,
                                unsigned *sure)
 {

@@ -76,7 +76,7 @@ static const R(cast_view) * R(view_of)(const glint_cast_args *args, glint_cast_v
     return made;
 }
 
-/// Returns whether the candidate may show in a rectangle of the picture, given by its middle, the length of the
+/// Returns whether the candidate may be visible in a rectangle of the picture, given by its middle, the length of the
 /// direction there, and its half sizes.
 static inline bool R(may_show)(const R(candidate) * candidate, const float middle[2], const float half[2], float length,
                                float spread)

@@ -1,7 +1,7 @@
-// soft: the points that the samples of an area light reach. Tests against the whole light, as a bounding ball, need
-// no rays: points that an occluder cannot come near, and points that it hides from the whole ball, are settled in
-// float, sixteen at a time. For other points, an occluder is tested against all samples of a group at once. Every
-// decision is that of occlude.h.
+// soft: the points that the samples of an area light reach. Each occluder is first tested against the bounding ball of
+// the light, in float, for 16 points at a time. The test decides without rays if the occluder hides all of the ball
+// from a point, or none of it. Otherwise the occluder is tested against all samples of a group at once. Every decision
+// is the same as in occlude.h.
 #ifndef GLINT_LIGHT_SOFT_H
 #define GLINT_LIGHT_SOFT_H
 
@@ -94,8 +94,8 @@ static void R(place_soft_light)(const R(shadow_tile) * tile, R(whole_light) * li
 
 /// Lanes by the effect of an occluder.
 typedef struct R(soft_lanes) {
-    unsigned apart; ///< the occluder is between the point and no part of the light
-    unsigned hidden; ///< it is between the point and the whole light
+    unsigned apart; ///< the occluder hides no part of the light from the point
+    unsigned hidden; ///< the occluder hides the whole light
 } R(soft_lanes);
 
 static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const glint_prim *plane, int side, size_t at)

@@ -35,8 +35,8 @@ static bool make_beam_axes(const double away[3], const double along[3], screen_v
 
 // ---- Triangles ----
 
-/// Computes the cells that each triangle may show in; for a triangle seen edge-on, the cells of its box. Returns the
-/// slots of `mask` that show in any.
+/// Computes the cells in which each triangle may be visible; for a triangle seen edge-on, the cells of its box.
+/// Returns the slots of `mask` that may be visible in any cell.
 static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *seen, const leaf_on_screen *shown,
                               unsigned mask, uint32_t cells[GLINT_NODE_WIDTH])
 {

@@ -6,8 +6,8 @@
 // root if its ends are on different sides of the surface. The side is decided at points, not by coefficients: by
 // their distance from the circle in the middle of the tube.
 
-/// Returns the position of a point relative to the torus: below 0 inside. *beyond: the remaining factor of Q, above
-/// 0.
+/// Returns the factor of Q whose sign tells the sides of the torus apart: below 0 inside. *beyond: the other factor,
+/// above 0 everywhere.
 static REAL NAME(torus_gap)(NAME(vec3) k, REAL tube, REAL *beyond)
 {
     REAL round = NAME(square_root)(k.x * k.x + k.y * k.y), near = round - 1, far = round + 1, level = k.z * k.z;
