@@ -138,7 +138,7 @@ int cli_new(const cli_options *options, cli_output *output)
     const char *name = options->arguments[0];
     size_t length = strlen(name);
     if (length == 0 || name[length - 1] == '/' || length > GLINTL_PATH_SIZE - 8 || *cli_base_name(name) == '.')
-        return refuse(output, GLINTL_EXIT_USAGE, name, "the name of a folder, or of a script in .lua, expected");
+        return refuse(output, GLINTL_EXIT_USAGE, name, "expected the name of a folder or of a .lua script");
     snprintf(path, sizeof path, "%s", name);
     int code = 0;
     if (!ends_in_lua(name)) {

@@ -206,7 +206,7 @@ static double read_side(lua_State *L, int index, const char *path)
 {
     const double side = glintL_read_number(L, index, path);
     if (!(side >= 1 && side <= GLINT_SIDE_MAX))
-        glintL_refuse(L, index, path, "number of pixels, 1 .. 65535,");
+        glintL_refuse(L, index, path, "number of pixels 1 .. 65535");
     return side;
 }
 

@@ -71,7 +71,7 @@ const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t 
     if (lua_isnil(L, many->index) && material_count < 2)
         return NULL;
     if (material_count == 0)
-        glintL_error(L, "%s.index: materials expected with an index", many->object);
+        glintL_error(L, "%s.index: an index needs materials; set materials, too", many->object);
     check_size(L, many, count);
     uint32_t *out = lua_newuserdatauv(L, (count + 1) * sizeof *out, 0);
     lua_replace(L, many->index_buffer);

@@ -94,7 +94,7 @@ static int apply_one(lua_State *L)
     if (!x)
         return call_plain(L);
     if (lua_gettop(L) > 1)
-        return glintL_error(L, "math.%s: only one argument expected with a number made of glint.variable", f->name);
+        return glintL_error(L, "math.%s: expected no second argument, because the first depends on glint.variable", f->name);
     const double y = f->value(x->value);
     if (f->slope == slope_level) { // rounding functions return integers, as in Lua
         lua_pushnumber(L, y);

@@ -63,7 +63,7 @@ static int apply_position(lua_State *L)
     check_count(L, info, 1, 3);
     const int end = glintL_read_position(L, 1, info->name, position);
     if (lua_gettop(L) >= end)
-        return glintL_error(L, "%s: a vector, or x, y and z expected, got more", info->name);
+        return glintL_error(L, "%s: expected a vector, or x, y and z, got more", info->name);
     glintL_apply(L, op, position, results);
     if (op == GLINT_OP_NOISE3) {
         glintL_push_triple(L, results);

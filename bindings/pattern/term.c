@@ -232,7 +232,7 @@ void glintL_read_operand(lua_State *L, int index, const char *path, glintL_opera
                         "where p has x, y and z",
                      path);
     if (lua_istable(L, index))
-        glintL_error(L, "%s: number, symbol or vector {x, y, z} of three of them expected, got another table", path);
+        glintL_error(L, "%s: expected a number, a symbol or a vector {x, y, z}, got another table", path);
     if (glintL_to_dual(L, index)) // inside a pattern's function it is allowed
         glintL_error(L, "%s: number or vector expected, got a number made of glint.variable; glint.value(x) is the "
                         "plain number", path);
@@ -260,7 +260,7 @@ int glintL_read_position(lua_State *L, int index, const char *path, glintL_term 
         return index + 1;
     }
     if (lua_isnoneornil(L, index + 1))
-        glintL_error(L, "%s: a vector, or x, y and z expected, got one number", path);
+        glintL_error(L, "%s: expected a vector, or x, y and z, got one number", path);
     for (int i = 0; i < 3; i++)
         out[i] = glintL_read_term(L, index + i, path);
     return index + 3;

@@ -142,7 +142,7 @@ static int look_up(lua_State *L)
     if (!lua_isnoneornil(L, next))
         in[2] = glintL_read_term(L, next, "texture: footprint");
     if (lua_gettop(L) > next)
-        return glintL_error(L, "texture: u, v and a footprint, or s.uv and a footprint expected, got more");
+        return glintL_error(L, "texture: expected u, v and a footprint, or s.uv and a footprint, got more");
     glintL_apply_texture(L, pattern->texture, in, out);
     glintL_push_color(L, out);
     return 1;

@@ -110,7 +110,7 @@ static int brick(lua_State *L)
     if (!lua_istable(L, 1) && !glintL_to_vector(L, 1))
         return glintL_error(L, "brick: a vector expected as the first argument: brick(p, mortar, footprint)");
     if (lua_gettop(L) > 3)
-        return glintL_error(L, "brick: a vector, the mortar's width and a footprint expected, got more");
+        return glintL_error(L, "brick: expected a vector, the mortar's width and a footprint, got more");
     if (!lua_isnoneornil(L, 2))
         mortar = glintL_read_term(L, 2, "brick: mortar");
     const glintL_term odd = parity_of(L, p[1], number(0), number(0));

@@ -107,7 +107,7 @@ static void refuse_result(lua_State *L, const glintL_trace *trace, int index)
     const char *hint = lua_isnoneornil(L, index) ? ": is a return missing, or a table indexed by a value of the point? use glint.select"
                                                  : "";
     const char *got = lua_istable(L, index) ? "a table that is not a vector" : glintL_push_spelling(L, index);
-    lua_pushfstring(L, "%s%s: a number, a symbol or a vector of three expected from the function, got %s%s",
+    lua_pushfstring(L, "%s%s: the function must return a number, a symbol or a vector of three, got %s%s",
                     trace->place, trace->is_shader ? "shader" : "pattern", got, hint);
     lua_error(L);
 }
@@ -117,13 +117,13 @@ static void read_results(lua_State *L, session *s)
 {
     const int count = lua_gettop(L) - 1, most = s->trace.is_shader ? 2 : 1;
     if (count > most && !s->trace.is_shader) {
-        lua_pushfstring(L, "%spattern: one value expected from the function, got %d; a colour is glint.vector(r, g, b) or { r, g, b }",
+        lua_pushfstring(L, "%spattern: the function must return one value, got %d; a colour is glint.vector(r, g, b) or { r, g, b }",
                         s->trace.place, count);
         lua_error(L);
     }
     if (count > most) {
-        lua_pushfstring(L, "%sshader: the diffuse part, or the diffuse and the specular part expected from the "
-                           "function, got %d values",
+        lua_pushfstring(L, "%sshader: the function must return the diffuse part, or the diffuse and the specular "
+                           "part, got %d values",
                         s->trace.place, count);
         lua_error(L);
     }

@@ -144,7 +144,7 @@ static int new_vector(lua_State *L)
     } else if (lua_gettop(L) == 1) {
         glintL_read_operand(L, 1, "vector", &operand);
     } else {
-        return glintL_error(L, "vector: x, y and z, or one value expected, got %d values", lua_gettop(L));
+        return glintL_error(L, "vector: expected x, y and z, or one value, got %d values", lua_gettop(L));
     }
     glintL_push_triple(L, operand.at);
     return 1;

@@ -173,7 +173,7 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
     if (glint_picture_bits(picture) == bits && glint_picture_transfer(picture) == glint_picture_transfer(first) &&
         glint_picture_channels(picture) == glint_picture_channels(first))
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: the same bits, transfer and channels as in %.200s expected",
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: expected the same bits, transfer and channels as in %.200s",
              film->files[i], film->files[0]);
     return false;
 }

@@ -146,7 +146,7 @@ static int matrix(lua_State *L)
         glintL_refuse(L, 1, "matrix", "table of 12 or 16 numbers, row by row");
     const size_t count = glintL_check_list(L, 1, "matrix", false);
     if (count != 12 && count != 16)
-        glintL_error(L, "matrix: 12 or 16 numbers, row by row, expected, got %d", (int)count);
+        glintL_error(L, "matrix: expected 12 or 16 numbers, row by row, got %d", (int)count);
     for (int i = 0; i < (int)count; i++) {
         lua_rawgeti(L, 1, i + 1);
         const double x = read_finite(L, -1, "matrix");

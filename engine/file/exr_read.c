@@ -88,7 +88,7 @@ static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channel
         status = glint_fail(error, GLINT_ERR_FORMAT, "no light passes; --passes 'light:*' writes them into an .exr");
     else if (colors != 3 || parts != 3 * count)
         status =
-            glint_fail(error, GLINT_ERR_FORMAT, "channels R, G and B of the picture and of each light pass expected");
+            glint_fail(error, GLINT_ERR_FORMAT, "expected channels R, G and B of the picture and of each light pass");
     if (!status)
         status = glint_image_create(width, height, passes | 1u << GLINT_PASS_BEAUTY, NULL, &file->image, error);
     if (!status)

@@ -108,7 +108,7 @@ static glint_status read_rows(struct jpeg_decompress_struct *info, failing *f, s
         return glint_fail(error, GLINT_ERR_FORMAT, "a picture of at most %zu pixels expected, got %u x %u", most,
                           info->image_width, info->image_height);
     if (info->num_components != 1 && info->num_components != 3)
-        return glint_fail(error, GLINT_ERR_FORMAT, "a JPEG in grey, or in red, green and blue, expected, got %s",
+        return glint_fail(error, GLINT_ERR_FORMAT, "expected a grey or RGB JPEG, got %s",
                           info->num_components == 4 ? "CMYK" : "other colours");
     info->out_color_space = info->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     info->dct_method = JDCT_ISLOW;

@@ -147,7 +147,7 @@ static glint_status check_cell(const glint_overlay_desc *desc, glint_error *erro
                                 desc->values[0][i]);
     }
     if (!status && !(widest > 0 && isfinite(widest)))
-        status = glint_fail(error, GLINT_ERR_INVALID, "box: sides a, b and c that span at least a plane expected");
+        status = glint_fail(error, GLINT_ERR_INVALID, "box: expected sides a, b and c that span at least a plane");
     return status;
 }
 

@@ -57,7 +57,7 @@ static glint_status find_focus(glint_plan_camera *camera, const glint_camera_des
         return GLINT_OK;
     if (!desc->has_focus_point && desc->has_direction)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "camera.focus: number > 0 or {x, y, z} expected where a camera with an aperture has a direction");
+                          "camera.focus: a camera with an aperture and a direction needs a focus: a number > 0, or {x, y, z}");
     vec_sub(to_focus, point, camera->eye);
     camera->focus = vec_dot(to_focus, camera->forward);
     if (camera->focus > 0 && isfinite(camera->focus))
@@ -72,7 +72,7 @@ static glint_status check_size(const glint_plan *plan, glint_error *error)
     const glint_plan_camera *camera = &plan->camera;
     double corner[3];
     if (!(camera->aperture <= BEND_MAX * camera->focus))
-        return glint_fail(error, GLINT_ERR_INVALID, "camera.aperture: number <= %.15g, %g times the focus, expected, got %.15g",
+        return glint_fail(error, GLINT_ERR_INVALID, "camera.aperture: expected a number <= %.15g (%g times the focus), got %.15g",
                           BEND_MAX * camera->focus, BEND_MAX, camera->aperture);
     for (int c = 0; c < 3; c++)
         corner[c] = camera->eye[c] + (camera->eye[c] < 0 ? -camera->aperture : camera->aperture);

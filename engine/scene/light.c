@@ -147,14 +147,14 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
     glint_status status = GLINT_OK;
     if (desc->has_radiance && desc->intensity != 1)
         status =
-            glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected together with a radiance, got %.15g", desc->intensity);
+            glint_fail(error, GLINT_ERR_INVALID, "intensity: with a radiance, expected 1, got %.15g", desc->intensity);
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->kind != GLINT_LIGHT_SPHERE)
         status = glint_fail(error, GLINT_ERR_INVALID, "shadow: rays or hard expected; only sphere lights have caps");
     const double *a = desc->attenuation;
     if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->has_radiance && (a[0] != 1 || a[1] != 0 || a[2] != 0))
         status =
             glint_fail(error, GLINT_ERR_INVALID,
-                       "attenuation: {1, 0, 0} expected together with a radiance and shadow = caps, got {%.9g, %.9g, "
+                       "attenuation: with a radiance and shadow = caps, expected {1, 0, 0}, got {%.9g, %.9g, "
                        "%.9g}",
                        a[0], a[1], a[2]);
     // the radius is squared

@@ -225,7 +225,7 @@ static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error
         if (!desc->materials[i])
             return glint_fail(error, GLINT_ERR_INVALID, "materials: entry %zu is missing", i + 1);
     if (desc->material_index && !desc->material_count)
-        return glint_fail(error, GLINT_ERR_INVALID, "materials: 1 or more expected with an index");
+        return glint_fail(error, GLINT_ERR_INVALID, "materials: an index needs 1 or more, got none");
     glint_status status = glint_check_transform("transform", &desc->transform, error);
     return !status && desc->has_shading ? glint_check_shading(desc->shading, error) : status;
 }
@@ -243,7 +243,7 @@ static glint_status check_vertices(const glint_mesh_desc *desc, glint_error *err
         const double *v = desc->normals + 3 * i;
         if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || is_zero(v))
             return glint_fail(error, GLINT_ERR_INVALID,
-                              "normals[%zu]: three finite numbers, not all 0, expected, got {%.15g, %.15g, %.15g}",
+                              "normals[%zu]: expected three finite numbers, not all 0, got {%.15g, %.15g, %.15g}",
                               i + 1, v[0], v[1], v[2]);
     }
     for (size_t i = 0; desc->uv && i < desc->uv_count; i++) {

@@ -133,7 +133,7 @@ static glint_status read_index(reader *r, const char **at, size_t count, index_k
         return GLINT_OK;
     }
     if (end == *at || errno || value == 0 || index < 0 || index >= INT32_MAX) {
-        snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", KINDS[kind], count);
+        snprintf(expected, sizeof expected, "a %s number 1 .. %zu", KINDS[kind], count);
         return complain(r, expected, *at);
     }
     *at = end;
@@ -284,7 +284,7 @@ static glint_status check_far(reader *r, index_kind kind, size_t count)
                              r->far[kind].index + 1);
         return GLINT_OK;
     }
-    snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", KINDS[kind], count);
+    snprintf(expected, sizeof expected, "a %s number 1 .. %zu", KINDS[kind], count);
     snprintf(got, sizeof got, "%zu", r->far[kind].index + 1);
     r->text.number = r->far[kind].line;
     return complain(r, expected, got);

@@ -129,7 +129,7 @@ static glint_status check_whole(body *b, double number, double most, const char 
         *out = (uint32_t)number;
         return GLINT_OK;
     }
-    snprintf(expected, sizeof expected, "%s, 0 .. %.0f,", field, most);
+    snprintf(expected, sizeof expected, "%s 0 .. %.0f", field, most);
     snprintf(got, sizeof got, "%.15g", number);
     return fail_at(b, expected, got);
 }
@@ -150,7 +150,7 @@ static glint_status read_face(body *b, const glint_ply_property *p, uint32_t *si
     uint32_t number;
     glint_status status = read_whole(b, p->count_type, INT32_MAX, "a number of corners", size);
     for (uint32_t i = 0; i < *size && !status; i++) {
-        status = read_whole(b, p->type, (double)b->head->vertex_count - 1, "the number of a vertex", &number);
+        status = read_whole(b, p->type, (double)b->head->vertex_count - 1, "a vertex number", &number);
         if (!status)
             status = glint_mesh_append(&r->corners, &number, r->error);
     }
@@ -170,7 +170,7 @@ static glint_status read_strips(body *b, const glint_ply_property *p)
     glint_mesh_reader *r = b->reader;
     uint32_t count = 0, length = 0, last[3] = { 0 };
     double number;
-    glint_status status = read_whole(b, p->count_type, UINT32_MAX, "the length of a list", &count);
+    glint_status status = read_whole(b, p->count_type, UINT32_MAX, "a list length", &count);
     for (uint32_t i = 0; i < count && !status; i++) {
         status = read_number(b, p->type, &number);
         if (!status && number == -1) {
@@ -178,7 +178,7 @@ static glint_status read_strips(body *b, const glint_ply_property *p)
             continue;
         }
         if (!status)
-            status = check_whole(b, number, (double)b->head->vertex_count - 1, "the number of a vertex", &last[2]);
+            status = check_whole(b, number, (double)b->head->vertex_count - 1, "a vertex number", &last[2]);
         const bool is_flat =
             last[0] == last[1] || last[1] == last[2] || last[0] == last[2]; // joins two parts of a strip
         if (!status && ++length >= 3 && !is_flat) {
@@ -200,7 +200,7 @@ static glint_status read_wedge(body *b, const glint_ply_property *p, uint32_t si
     glint_mesh_reader *r = b->reader;
     uint32_t count = 0;
     double pair[2] = { 0 };
-    glint_status status = read_whole(b, p->count_type, UINT32_MAX, "the length of a list", &count);
+    glint_status status = read_whole(b, p->count_type, UINT32_MAX, "a list length", &count);
     for (uint32_t i = 0; i < count && !status; i++) {
         status = read_number(b, p->type, &pair[i % 2]);
         pair[i % 2] = isfinite(pair[i % 2]) ? pair[i % 2] : 0;
@@ -219,7 +219,7 @@ static glint_status pass_over(body *b, const glint_ply_property *p)
     double number;
     uint32_t count = 1;
     glint_status status =
-        p->is_list ? read_whole(b, p->count_type, UINT32_MAX, "the length of a list", &count) : GLINT_OK;
+        p->is_list ? read_whole(b, p->count_type, UINT32_MAX, "a list length", &count) : GLINT_OK;
     for (uint32_t i = 0; i < count && !status; i++)
         status = read_number(b, p->type, &number);
     return status;
@@ -279,7 +279,7 @@ static glint_status add_color(body *b, const double v[GLINT_PLY_NUMBERS])
         const double code = v[GLINT_PLY_RED + c];
         if (!(code >= 0 && code <= 255 && code == floor(code))) { // possible in text files
             snprintf(got, sizeof got, "%.15g", code);
-            return fail_at(b, "a colour's code, 0 .. 255,", got);
+            return fail_at(b, "a colour value 0 .. 255", got);
         }
         codes[c] = (uint8_t)code;
     }

@@ -87,7 +87,7 @@ static glint_status number_shading_points(glint_mesh *mesh, const uint32_t *inde
         return GLINT_OK;
     }
     if (corners >= GLINT_NO_NORMAL)
-        return glint_fail(error, GLINT_ERR_INVALID, "shading: at most %u triangles expected with gouraud, got %zu",
+        return glint_fail(error, GLINT_ERR_INVALID, "shading: gouraud allows at most %u triangles, got %zu",
                           GLINT_NO_NORMAL / 3, mesh->triangle_count);
     chains c = { malloc(mesh->vertex_count * sizeof *c.first), malloc(corners * sizeof *c.next),
                  malloc(corners * sizeof *c.normal), index ? malloc(corners * sizeof *c.material) : NULL };

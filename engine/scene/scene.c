@@ -76,7 +76,7 @@ static glint_status check_together(const glint_scene_desc *desc, glint_error *er
         return glint_fail(error, GLINT_ERR_INVALID,
                           "depth_cue.color: a colour expected, because its default, the background, is a pattern");
     if (desc->has_depth_cue && !(desc->depth_cue_far > desc->depth_cue_near && isfinite(desc->depth_cue_far)))
-        return glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: finite number above near, %.10g, expected, got %.10g",
+        return glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: expected a finite number above near (%.10g), got %.10g",
                           desc->depth_cue_near, desc->depth_cue_far);
     if (desc->has_indirect && desc->has_ambient_occlusion)
         return glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion: either this or indirect expected, because "

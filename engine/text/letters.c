@@ -120,7 +120,7 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
     if (lost)
         return glint_fail_nomem(error);
     if (wanted && *wanted)
-        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_FONT: the file of a scalable font, or bitmap, expected, got '%.300s'",
+        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_FONT: expected the file of a scalable font, or the word bitmap, got '%.300s'",
                           wanted);
     return GLINT_OK;
 }

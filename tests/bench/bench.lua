@@ -19,7 +19,7 @@ local function die(message)
   os.exit(2)
 end
 
-if not runs or runs < 1 or runs > 1000 then die(("RUNS: whole number, 1 .. 1000, expected, got '%s'"):format(arg[4])) end
+if not runs or runs < 1 or runs > 1000 then die(("RUNS: whole number 1 .. 1000 expected, got '%s'"):format(arg[4])) end
 
 local function parts_of(text)
   local known, parts = {}, {}

@@ -375,7 +375,7 @@ static void bad_descriptions_are_refused(void **unused)
     d.attenuation[2] = 1;
     assert_int_equal(glint_light_create(&d, &light, &error), GLINT_ERR_INVALID);
     assert_string_equal(error.message,
-                        "attenuation: {1, 0, 0} expected together with a radiance and shadow = caps, got {1, 0, 1}");
+                        "attenuation: with a radiance and shadow = caps, expected {1, 0, 0}, got {1, 0, 1}");
 }
 
 int main(void)

@@ -769,9 +769,9 @@ static void good_files(void **unused)
 static void bad_files(void **unused)
 {
     static const char *const files[][2] = {
-        { CORNERS "f 1 2 5", ":5: the number of a vertex, 1 .. 4, expected, got '5'" },
-        { CORNERS "f 1 2 -5", ":5: the number of a vertex, 1 .. 4, expected, got '-5'" },
-        { CORNERS "f 1 2 0", ":5: the number of a vertex, 1 .. 4, expected, got '0'" },
+        { CORNERS "f 1 2 5", ":5: a vertex number 1 .. 4 expected, got '5'" },
+        { CORNERS "f 1 2 -5", ":5: a vertex number 1 .. 4 expected, got '-5'" },
+        { CORNERS "f 1 2 0", ":5: a vertex number 1 .. 4 expected, got '0'" },
         { CORNERS "f 1/x 2 3", ":5: v, v/vt, v//vn or v/vt/vn expected, got '1/x 2 3'" },
         { CORNERS "f 1 2", "faces expected, got 4 vertices and none" },
         { CORNERS "f 1 2 3x", ":5: v, v/vt, v//vn or v/vt/vn expected, got '3x'" },

@@ -282,7 +282,7 @@ function tests.area_lights()
   check(disk.samples == 16 and disk.radiance == nil and is(disk.normal, 0, -2, 0) and disk.radius == 2, "disk")
   disk.radiance, disk.samples = 5, 64
   check(disk.radiance == 5 and disk.samples == 64 and disk.intensity == 1, "radiance")
-  raises("disk_light.intensity: 1 expected together with a radiance, got 2", function() disk.intensity = 2 end)
+  raises("disk_light.intensity: with a radiance, expected 1, got 2", function() disk.intensity = 2 end)
   disk.radiance = nil
   disk.intensity = 2
   check(disk.radiance == nil and disk.intensity == 2, "back to intensity")

@@ -386,7 +386,7 @@ for _, depth in ipairs { -1, 0.5, 0 / 0, 1e18 } do
   raises("max_depth", look, { 0, 0, 4 }, { 0, 0, -1 }, { ball(1, glass(1.5)) }, { max_depth = depth })
 end
 local gain = { ball(1, glass(1.5, { mirror = 1 })) }
-raises("max_depth: at most 31 expected with a material whose mirror + transmission is above 1 (here 2), got 32", look, { 0, 0, 4 },
+raises("max_depth: expected at most 31, because the mirror + transmission of a material is above 1 (here 2), got 32", look, { 0, 0, 4 },
   { 0, 0, -1 }, gain, { max_depth = 32 })
 check(look({ 0, 0, 4 }, { 0, 0.01, -1 }, gain, { max_depth = 12, background = 1 }) > 1, "up to 31 it may be")
 local m = glint.material { fresnel = true }

@@ -101,7 +101,7 @@ function tests.points_that_are_not_projected()
   end
   raises("project.point: {x, y, z} expected, got no value", view)
   raises("project.point[2]: finite number expected", view, { 0, 0 / 0, 1 }, 4, 4)
-  raises("project.width: number of pixels, 1 .. 65535, expected, got 0", view, { 0, 0, 0 }, 0, 4)
+  raises("project.width: number of pixels 1 .. 65535 expected, got 0", view, { 0, 0, 0 }, 0, 4)
   raises("project.height: number expected, got no value", view, { 0, 0, 0 }, 4)
 end
 
@@ -184,7 +184,7 @@ function tests.what_is_no_camera()
   wrong("camera: matrix or eye expected, got both", { eye = { 0, 0, 1 } })
   wrong("camera: matrix or at expected, got both", { at = { 0, 0, 1 } })
   wrong("camera.fx: pixels > 0 expected, got -1", { fx = -1 })
-  wrong("camera.fx: pixels > 0 expected with fy, got 0", { fx = 0 })
+  wrong("camera.fx: expected pixels > 0, because fy is set, got 0", { fx = 0 })
   wrong("camera.w: w and h expected", { w = 640 })
   wrong("camera.fx: a perspective camera expected", { projection = "orthographic" })
   check(not pcall(glint.camera, { at = { 0, 0, 0 } }), "an eye is needed")

@@ -125,7 +125,7 @@ local function set(value) scene.depth_cue = value end
 raises("scene.depth_cue: table expected, got 3", set, 3)
 raises("scene.depth_cue.fat: no such field; did you mean 'far'?", set, { near = 1, fat = 2 })
 raises("far", set, { near = 1 })
-raises("scene.depth_cue.far: finite number above near, 2, expected, got 2", set, { near = 2, far = 2 })
+raises("scene.depth_cue.far: expected a finite number above near (2), got 2", set, { near = 2, far = 2 })
 raises("scene.depth_cue.near: finite number >= 0 expected, got -1", set, { near = -1, far = 2 })
 raises("scene.depth_cue.far: finite number expected, got inf", set, { near = 1, far = math.huge })
 raises("scene.depth_cue.color", set, { near = 1, far = 2, color = { -1, 0, 0 } })

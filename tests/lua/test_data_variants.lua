@@ -338,7 +338,7 @@ function tests.columns_of_colours()
   is(spell(points.frame(write("o.txt", "0 0 0 2 300 7\n"))), "point 0 0 0 2", "neither a colour nor a normal")
   is(colored("own.csv", "x,y,z,r,g,b\n0,0,0,255,0,0\n", { kinds = { point = { color = "blue", radius = 1 } } }), "0 0 0 point",
     "a colour of the script comes first")
-  raises('bad.csv:3: red, green and blue, 0 .. 255, expected, got "-1"', colored, "bad.csv", "x,y,z,r,g,b\n0,0,0,255,0,0\n0,0,0,-1,0,0\n")
+  raises('bad.csv:3: red, green and blue 0 .. 255 expected, got "-1"', colored, "bad.csv", "x,y,z,r,g,b\n0,0,0,255,0,0\n0,0,0,-1,0,0\n")
   local many = {}
   for i = 0, 9999 do many[#many + 1] = ("%d 0 0 %d %d 7"):format(i, i // 100, i % 100 + 150) end
   local set = particles.new { radius = 1 }

@@ -428,8 +428,8 @@ local VIEW = "8, 6, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {}"
 refuses("gr.render('x', 'f', " .. VIEW .. ")", "gr.render: root: node expected, got \"x\"")
 refuses("gr.render(gr.node('n'), '', " .. VIEW .. ")", "gr.render: file: name of a file expected, got \"\"")
 for _, case in ipairs {
-  { "0.5, 6, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {}", "width: pixels, 1 .. 65535, expected, got 0.5" },
-  { "8, 1e9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {}", "height: pixels, 1 .. 65535, expected, got 1000000000" },
+  { "0.5, 6, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {}", "width: pixels 1 .. 65535 expected, got 0.5" },
+  { "8, 1e9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {}", "height: pixels 1 .. 65535 expected, got 1000000000" },
   { "8, 6, gr.node('camera')", "eye: table expected, got node 'camera'" },
   { "8, 6, {0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 50, {0, 0, 0}, {}", "view: a direction other than {0, 0, 0} expected" },
   { "8, 6, {0, 0, 5}, {0, 0, 1}, {0, 0, 0}, 50, {0, 0, 0}, {}", "up: a direction other than {0, 0, 0} expected" },

@@ -178,7 +178,7 @@ function tests.errors()
   raises("did you mean 'light:key'?", still, { lamp { name = "key" } }, { passes = "light:kye" })
   raises("the scene has 'ambient', 'key'", still, { lamp { name = "key" } }, { passes = "light:somethingelse" })
   raises("'light:': expected a light's name", still, { lamp { name = "key" } }, { passes = "light:" })
-  raises("another name expected", still, { lamp { name = "ambient" } }, { passes = "light:*" })
+  raises("use another name", still, { lamp { name = "ambient" } }, { passes = "light:*" })
   raises("for its light pass, expected", still, { lamp { name = "a/b" } }, { passes = "light:*" })
   check(pcall(still, { lamp { name = "a/b" }, lamp { name = "key" } }, { passes = "light:key" }), "names that are not asked for may be any")
 end

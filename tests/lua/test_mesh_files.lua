@@ -375,9 +375,9 @@ function tests.colours_of_ply()
   local own = glint.material { diffuse = 0.5 }
   local mesh = glint.mesh { file = write("own.ply", colored("ascii", nil, { RED, SKY })), material = own }
   check(#mesh.materials == 1 and mesh.material == own, "a material of the script comes first")
-  refuses(":15: vertex 2 of 6: a colour's code, 0 .. 255, expected, got 256", "a.ply",
+  refuses(":15: vertex 2 of 6: a colour value 0 .. 255 expected, got 256", "a.ply",
     colored("ascii", { RED, { 0, 256, 0 }, RED, RED, RED, RED }))
-  refuses(":20: face 1 of 2: a colour's code, 0 .. 255, expected, got 0.5", "a.ply", colored("ascii", nil, { { 0, 0, 0.5 }, RED }))
+  refuses(":20: face 1 of 2: a colour value 0 .. 255 expected, got 0.5", "a.ply", colored("ascii", nil, { { 0, 0, 0.5 }, RED }))
 end
 
 -- ---- Invalid files ----
@@ -408,9 +408,9 @@ function tests.refused()
   refuses(": element dust: no more than the file has room for expected, got 9", "a.ply", head .. "element dust 9\n" .. vertex .. face ..
     "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
   local body = head .. vertex .. face .. "end_header\n0 0 0\n1 0 0\n0 1 0\n"
-  refuses(":13: face 1 of 1: the number of a vertex, 0 .. 2, expected, got 3", "a.ply", body .. "3 0 1 3\n")
-  refuses(":13: face 1 of 1: the number of a vertex, 0 .. 2, expected, got -1", "a.ply", body .. "3 0 1 -1\n")
-  refuses(":13: face 1 of 1: the number of a vertex, 0 .. 2, expected, got 1.5", "a.ply", body .. "3 0 1 1.5\n")
+  refuses(":13: face 1 of 1: a vertex number 0 .. 2 expected, got 3", "a.ply", body .. "3 0 1 3\n")
+  refuses(":13: face 1 of 1: a vertex number 0 .. 2 expected, got -1", "a.ply", body .. "3 0 1 -1\n")
+  refuses(":13: face 1 of 1: a vertex number 0 .. 2 expected, got 1.5", "a.ply", body .. "3 0 1 1.5\n")
   refuses(": a face of 3 corners or more expected, got none", "a.ply", body .. "2 0 1\n")
   refuses(":14: face 1 of 1: a line expected, got the end of the file", "a.ply", body .. "3 0 1\n")
   refuses(":13: face 1 of 1: the end of the line expected, got more numbers", "a.ply", body .. "3 0 1 2 2\n")

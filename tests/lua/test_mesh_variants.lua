@@ -94,9 +94,9 @@ function tests.faces_that_are_none()
     warns((":4: %s is ignored: the file has none"):format(want), path)
   end
   check(load("late.obj", "f 1 2 3\n", TRIANGLE).count == 1, "faces before vertices")
-  refuses(":4: the number of a vertex, 1 .. 3, expected, got '4'", "far.obj", TRIANGLE .. "f 1 2 4\nf 1 2 3\n")
-  refuses(":5: the number of a normal, 1 .. 1, expected, got '2'", "far.obj", TRIANGLE .. "vn 0 0 1\nf 1//2 2//1 3//1\n")
-  refuses(":4: the number of a vertex, 1 .. 3, expected, got '0 1 2'", "far.obj", TRIANGLE .. "f 0 1 2\n")
+  refuses(":4: a vertex number 1 .. 3 expected, got '4'", "far.obj", TRIANGLE .. "f 1 2 4\nf 1 2 3\n")
+  refuses(":5: a normal number 1 .. 1 expected, got '2'", "far.obj", TRIANGLE .. "vn 0 0 1\nf 1//2 2//1 3//1\n")
+  refuses(":4: a vertex number 1 .. 3 expected, got '0 1 2'", "far.obj", TRIANGLE .. "f 0 1 2\n")
   path = write("n.obj", TRIANGLE .. "vn 0 0 1\nvn 0 0 0\nvn nan 0 0\nf 1//1 2//2 3//1\n")
   local mesh = glint.mesh { file = path }
   check(mesh.count == 1 and mesh.shading == "phong", "a normal of 0 is none")
@@ -283,7 +283,7 @@ function tests.ply()
   mesh = load("s.ply", binary, "element vertex 4\n", VERTEX, strips, (">fffffffffffff"):sub(1, 13):pack(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0),
     (">i4i4i4i4i4"):pack(4, 0, 1, 2, 3))
   check(mesh.count == 2, "binary")
-  refuses(":14: tristrips 1 of 1: the number of a vertex, 0 .. 3, expected, got -2", "s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices,
+  refuses(":14: tristrips 1 of 1: a vertex number 0 .. 3 expected, got -2", "s.ply", HEAD, "element vertex 4\n", VERTEX, strips, vertices,
     "3 0 1 -2\n")
   check(load("l.ply", HEAD, "element vertex 3\n", VERTEX, FACE, "end_header\n0\n0 0\n1 0\n0\n\n0 1 0\n3 0\n1 2\n").count == 1,
     "a vertex over several lines")

@@ -232,7 +232,7 @@ function tests.axes_of_a_cell()
   check(axes.labels[2] == "b" and axes.box.b[2] == 1.5 and axes.box.origin.x == 0, "it reads as it is")
   axes.box = { { 0, 0, 0 }, { 1, 1, 1 } }
   check(axes.labels[2] == "y" and axes.box[2].y == 1, "and becomes a box")
-  raises("axes.box: sides a, b and c that span at least a plane expected", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2, 0, 0 } } })
+  raises("axes.box: expected sides a, b and c that span at least a plane", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2, 0, 0 } } })
   raises("axes.box.b[2]: number expected, got nil", glint.axes, { box = { a = { 1, 0, 0 }, b = { 2 } } })
 end
 

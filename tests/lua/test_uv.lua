@@ -115,7 +115,7 @@ function tests.files_have_vt()
     end)
   end
   with_file(head .. "f 1/1 2/2 3/5\n", function(name)
-    raises(":10: the number of a texture coordinate, 1 .. 4, expected, got '5'", glint.mesh, { file = name })
+    raises(":10: a texture coordinate number 1 .. 4 expected, got '5'", glint.mesh, { file = name })
   end)
   with_file(head .. "f 1/x 2/2 3/5\n", function(name) raises("v/vt/vn expected", glint.mesh, { file = name }) end)
   with_file(head .. "vt a b\nf 1 2 3\n", function(name) raises(":10: a number expected, got 'a b'", glint.mesh, { file = name }) end)
@@ -141,7 +141,7 @@ function tests.errors_name_the_field()
   raises("mesh: file or uv expected, got both", glint.mesh, { file = "x.obj", uv = { 0, 0 } })
   for _, fields in ipairs { { diffuse = UV }, { bump = glint.pattern(function(_, s) return s.uv.u end) } } do
     local mesh = quad { name = "bare", material = glint.material(fields) }
-    raises("s.uv: mesh 'bare' has no texture coordinates: uv, or vt in its file, expected",
+    raises("s.uv: mesh 'bare' has no texture coordinates; set its uv, or add vt to its file",
       function() scene_of(mesh):render(PASSES) end)
   end
 end

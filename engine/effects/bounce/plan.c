@@ -155,8 +155,8 @@ static glint_status check_depth(const glint_plan *plan, double most, glint_error
     if (most <= 1 || plan->desc.max_depth <= GLINT_BOUNCE_DEPTH)
         return GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID,
-                      "max_depth: at most %d expected with a material whose mirror + transmission is above 1 (here "
-                      "%.9g), got %.0f",
+                      "max_depth: expected at most %d, because the mirror + transmission of a material is above 1 "
+                      "(here %.9g), got %.0f",
                       GLINT_BOUNCE_DEPTH, most, plan->desc.max_depth);
 }
 

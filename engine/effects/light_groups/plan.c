@@ -186,7 +186,7 @@ glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *s
         glint_scene_light_pass(scene, i, own);
         if (strcmp(own, GLINT_LIGHT_REST) == 0)
             return glint_fail(error, GLINT_ERR_INVALID,
-                              "light '%s': another name expected: the light pass of this name holds the light that "
+                              "light '%s': use another name: this one is reserved for the light pass of the light that "
                               "comes from no lamp",
                               own);
     }

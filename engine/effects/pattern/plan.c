@@ -294,7 +294,7 @@ static glint_status take_mesh_uv(glint_pattern_space *space, const glint_shape *
     space->mesh = shape->mesh;
     if (!shape->mesh->uv)
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "s.uv: mesh%s%s%s has no texture coordinates: uv, or vt in its file, expected", before,
+                          "s.uv: mesh%s%s%s has no texture coordinates; set its uv, or add vt to its file", before,
                           name, after);
     if (shape->mesh->uv_missing[material])
         return glint_fail(error, GLINT_ERR_INVALID, "s.uv: mesh%s%s%s: faces[%zu] has no texture coordinates (vt)", before,

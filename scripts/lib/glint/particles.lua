@@ -263,7 +263,7 @@ local function add_colored(self, frame)
     if math.type(v) and v >= 0 and (v * scale <= 255 or frame.color.most == 1 and v <= 16) then
       return math.floor(math.min(v * scale, 255) + 0.5)
     end
-    frame:fail(("red, green and blue, 0 .. %d,"):format(frame.color.most), tostring(v))
+    frame:fail(("red, green and blue 0 .. %d"):format(frame.color.most), tostring(v))
   end
   for label, x, y, z, radius, r, g, b in frame:atoms("red", "green", "blue") do
     local is_lost = r ~= r or g ~= g or b ~= b -- NaN

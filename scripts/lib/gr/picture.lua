@@ -284,7 +284,7 @@ end
 local function read_side(name, value)
   local side = check.number("render", name, value)
   side = floor(side)
-  if side < 1 or side > 65535 then check.refuse("render", name, "pixels, 1 .. 65535,", value) end
+  if side < 1 or side > 65535 then check.refuse("render", name, "pixels 1 .. 65535", value) end
   return side
 end
 
