@@ -1029,7 +1029,7 @@ function glint.shader(f) end
 
 ---@class glint.texture_fields
 ---@field file string  a PNG file, 8 or 16 bits
----@field wrap? "repeat"|"clamp"|"around"  what is beyond 0 .. 1: itself, its border, or itself across and its border up and down. Default "repeat"
+---@field wrap? "repeat"|"clamp"|"around"  beyond 0 .. 1: repeat it, continue its border, or repeat it horizontally and continue its border vertically. Default "repeat"
 ---@field filter? "bilinear"|"nearest"  between four texels, of a picture made smaller as the footprint calls for; or the texel itself. Default "bilinear"
 ---@field transfer? "srgb"|"linear"  how its codes are meant. Default "srgb", but for a picture that says that it is linear
 
