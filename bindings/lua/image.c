@@ -218,7 +218,7 @@ static const char *check_path(lua_State *L)
     lua_replace(L, 2);
     path = lua_tostring(L, 2);
     if (glintL_name_is_special(path))
-        glintL_refuse(L, 2, "save.path", "regular file, not a pipe or device,");
+        glintL_refuse(L, 2, "save.path", "regular file (not a pipe or device)");
     return path;
 }
 

@@ -162,7 +162,7 @@ static glint_status refuse_size(glint_mesh_reader *r, const char *head, size_t g
                           "%s: \"solid\" or %d bytes and %d for each of its %u triangles expected, got %llu bytes",
                           r->text.path, HEAD_BYTES, TRIANGLE_BYTES, count, (unsigned long long)r->text.size);
     r->text.number = 1;
-    return glint_mesh_refuse(&r->text, "solid, as the first word of a text,", head);
+    return glint_mesh_refuse(&r->text, "the first word solid", head);
 }
 
 /// A file whose size fits its number of triangles is binary, whatever its header says, because both formats may begin

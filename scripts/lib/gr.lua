@@ -142,7 +142,7 @@ function gr.mesh(name, vertices, faces)
   elseif type(vertices) == "table" then
     model = mesh.of_tables(vertices, faces)
   else
-    check.refuse("mesh", "vertices", "table, or the name of an .obj file,", vertices)
+    check.refuse("mesh", "vertices", "table or name of an .obj file", vertices)
   end
   return new_node("mesh", name, { kind = "mesh", model = model })
 end
@@ -270,7 +270,7 @@ local function picture_of(call, value, across, down)
   local known = pictures[value]
   if known and across == nil then return known end
   if not known and type(value) ~= "string" then
-    check.refuse(call, "texture", "texture, or the name of a file,", value)
+    check.refuse(call, "texture", "texture or name of a file", value)
   end
   return surface.picture(call, known and known.name or value, across, down)
 end
@@ -278,7 +278,7 @@ end
 local function relief_of(call, value, height)
   local known = reliefs[value]
   if known and height == nil then return known end
-  if not known and type(value) ~= "string" then check.refuse(call, "bump", "bump, or the name of a file,", value) end
+  if not known and type(value) ~= "string" then check.refuse(call, "bump", "bump or name of a file", value) end
   return surface.relief(call, known and known.name or value, height)
 end
 

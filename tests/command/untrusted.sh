@@ -202,7 +202,7 @@ script 'name = "pipe.png"'
 stopped "a picture into a pipe that is not read"
 seconds=20
 script 'function after() image:save("pipe.png") end'
-refused "image:save into a pipe" "save.path: regular file, not a pipe or device, expected" -o a.png
+refused "image:save into a pipe" "save.path: regular file (not a pipe or device) expected" -o a.png
 timeout 5 "$glint" --untrusted pipe.lua -o none >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "a script expected, got a pipe" err
 result $? "a script that is a pipe"

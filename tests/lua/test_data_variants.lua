@@ -123,7 +123,7 @@ function tests.alternate_locations()
   local path = write("two.pdb", ("MODEL        1\n" .. atom(" CA ", "A", "SER", 1, 0, "C") .. "ENDMDL\nMODEL        2\n" ..
     atom(" CA ", "B", "SER", 1, 1, "C") .. "ENDMDL\n"))
   is(spell(pdb.frame(path, 2)), "C 1 0 0", "each model anew")
-  raises("tabs.pdb:1: a record in columns, with blanks and no tabs, expected", function()
+  raises("tabs.pdb:1: a record in columns without tabs expected", function()
     spell(pdb.frame(write("tabs.pdb", "ATOM\t1\tCA\tALA\tA\t1\t0.000\t0.000\t0.000\t1.00\t0.00\tC\n" .. (" "):rep(60))))
   end)
 end
@@ -268,7 +268,7 @@ function tests.dumps()
   local text = dump(" pp pp pp\n0 9\n0 9\n0 9", "type x y z", "1 1 2 3")
   is(spell(lammps.frame(write("u.dump", (text:gsub("ITEM: NUMBER", "ITEM: SOMETHING NEW\n1 2 3\n4\n%0"))))), "type1 1 2 3", "an item of a later version")
   raises("u.dump:9: a line ITEM: ... expected", function() lammps.frame(write("u.dump", (text:gsub("ITEM: ATOMS type", "LATER %0")))) end)
-  raises("ITEM: ATOMS, as dump atom and dump custom write it, expected", lammps.frame,
+  raises("ITEM: ATOMS of dump atom or dump custom expected", lammps.frame,
     write("l.dump", "ITEM: TIMESTEP\n0\nITEM: ENTRIES index c_1\n1 2\n"))
 end
 
@@ -358,7 +358,7 @@ function tests.clouds()
   end
   is(colored("n.ply", head:format("ascii", "") .. "nan nan nan 1 1 1\n1 0 0 0 255 0\n"), "1 0 0 #00ff00", "gaps")
   is(colored("f.ply", (head:gsub("uchar", "float"):format("ascii", "")) .. "0 0 0 1 0 0\n1 0 0 0 1 0\n"), RED_GREEN, "colours 0 .. 1")
-  raises("c.ply:13: point 2 of 2, with 6 numbers, expected, got the end of the file", colored, "c.ply", head:format("ascii", "") .. "0 0 0 1 0 0\n")
+  raises("c.ply:13: point 2 of 2 with 6 numbers expected, got the end of the file", colored, "c.ply", head:format("ascii", "") .. "0 0 0 1 0 0\n")
   local pcd = "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F %s\nCOUNT 1 1 1 1\n" ..
     "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA %s\n"
   is(colored("a.pcd", pcd:format("U", "ascii") .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, ".pcd")

@@ -418,7 +418,7 @@ refuses("gr.node('n'):rotate('x', 1/0)", "gr.rotate: degrees: finite number expe
 refuses("gr.node('n'):translate({1, 2, 3})", "gr.translate: x: number expected, got table of 3")
 refuses("gr.node('n'):scale(1, 2)", "gr.scale: z: number expected, got nil")
 refuses("gr.node('n'):scale(0/0, 2, 1)", "gr.scale: x: finite number expected, got nan")
-refuses("gr.mesh('m')", "gr.mesh: vertices: table, or the name of an .obj file, expected, got nil")
+refuses("gr.mesh('m')", "gr.mesh: vertices: table or name of an .obj file expected, got nil")
 refuses("gr.mesh('m', {kd})", "gr.mesh: faces: table expected, got nil")
 refuses("gr.mesh('m', {}, {})", "gr.mesh: vertices: 1 vertex or more expected, got table of 0")
 refuses("gr.mesh('m', {kd, {1, 2}}, {{0, 1, 0}})", "gr.mesh: vertices[2]: table of 3 numbers expected, got table of 2")

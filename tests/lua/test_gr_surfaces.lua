@@ -223,15 +223,15 @@ function tests.what_means_nothing_is_told_of_once()
     ["10000000"] = "10000000; a reflectivity 0 .. 1 or an index up to 4 expected",
     ["1"] = "1; 1 means a mirror only where kd is {0, 0, 0}",
     ["0.3, 1.5"] = "0.3; the refractive index determines how much glass reflects",
-    ["0.05, 100"] = "0.05, 100; a reflectivity and a transparency 0 .. 1, or an index up to 4, expected",
+    ["0.05, 100"] = "0.05, 100; expected a reflectivity and a transparency 0 .. 1, or an index up to 4",
     ["1.3, 0, 0.6"] = "1.3, 0, 0.6; a reflectivity, a transparency and an index expected",
     ["0.5, 0.2, 1.33, 0.15"] = "0.15; only three numbers are used",
     ["2, 0.5, 0.2, 1.33"] = "2; glint's mirrors are always sharp",
     ["2, 0.5, 0.2, 9"] = "2, 0.5, 0.2, 9; a reflectivity, a transparency and an index expected",
     ["0.2, 0.5, 1, 7"] = "7; only three numbers are used",
     ["{3, 0, 0}"] = "table of 3; a reflectivity of three numbers 0 .. 1 expected",
-    ["{1, 2}"] = "table of 2; numbers, and the name of a picture, expected",
-    ["'soft'"] = '"soft"; numbers, and the name of a picture, expected',
+    ["{1, 2}"] = "table of 2; expected numbers and the name of a picture",
+    ["'soft'"] = '"soft"; expected numbers and the name of a picture',
   } do
     local said, code = run(text:format(extra))
     local _, count = said:gsub("left out after the shininess", "")
@@ -375,12 +375,12 @@ function tests.errors_name_the_call()
   refuses("gr.texture('four.png', 'x')", "gr.texture: ks: table expected, got \"x\"")
   refuses("gr.texture('four.png', {1, 2}, 3)", "gr.texture: ks: table of 3 numbers expected, got table of 2")
   refuses("gr.texture('four.png', {1, 2, 3})", "gr.texture: shininess: number expected, got nil")
-  refuses("s:set_texture()", "gr.set_texture: texture: texture, or the name of a file, expected, got nil")
-  refuses("s:set_texture(m)", "gr.set_texture: texture: texture, or the name of a file, expected, got material")
+  refuses("s:set_texture()", "gr.set_texture: texture: texture or name of a file expected, got nil")
+  refuses("s:set_texture(m)", "gr.set_texture: texture: texture or name of a file expected, got material")
   refuses("gr.node('n'):set_texture('four.png')", "gr.set_texture: a shape expected, got the node 'n', which has no surface")
   refuses("s:set_bump('none.png')", "gr.set_bump: 'none.png': no such file")
   refuses("s:set_bump('four.png', 'high')", "gr.set_bump: height: number expected, got \"high\"")
-  refuses("s:set_bump(gr.texture 'four.png')", "gr.set_bump: bump: bump, or the name of a file, expected, got texture")
+  refuses("s:set_bump(gr.texture 'four.png')", "gr.set_bump: bump: bump or name of a file expected, got texture")
   refuses("m:set_reflect(-1)", "gr.set_reflect: reflectivity: number >= 0 expected, got -1")
   refuses("m:set_ri(0)", "gr.set_ri: index: number > 0 expected, got 0")
   refuses("gr.refractive()", "gr.refractive: index: number expected, got nil")
@@ -399,7 +399,7 @@ function tests.errors_name_the_call()
   refuses("gr.rect_light({0, 0, 0}, 0, 1, {1, 1, 1})", "gr.rect_light: width: number above 0 expected, got 0")
   refuses("gr.rect_light({0, 0, 0}, 1, 1, {1, -1, 1})", "gr.rect_light: colour[2]: number >= 0 expected, got -1")
   refuses("gr.normal_map('four.png', 0)", "gr.normal_map: strength: number above 0 expected, got 0")
-  refuses("gr.sphere('s'):set_normal(1)", "gr.set_normal: map: normal map, or the name of a file, expected, got 1")
+  refuses("gr.sphere('s'):set_normal(1)", "gr.set_normal: map: normal map or name of a file expected, got 1")
   refuses("gr.sphere('s'):set_perlin('x')", "gr.set_perlin: kind: number expected, got \"x\"")
   refuses("gr.material({1, 1, 1}, {0, 0, 0}, 1):set_opacity(1.5)", "gr.set_opacity: opacity: number 0 .. 1 expected, got 1.5")
   refuses("gr.material({1, 1, 1}, {0, 0, 0}, 1, {1, 2, -1})", "gr.material: reflectivity[3]: number >= 0 expected, got -1")

@@ -420,7 +420,7 @@ function tests.refused()
   refuses(":3: outer expected, got 'vertex 0 0 0'", "a.stl", "solid x\nfacet normal 0 0 1\nvertex 0 0 0\n")
   refuses(":4: outer expected, got 'the end of the file'", "a.stl", "solid x\nfacet normal 0 0 1\n\n")
   refuses(": triangles expected, got none", "a.stl", "solid x\nendsolid x\n")
-  refuses(":1: solid, as the first word of a text, expected, got '12345'", "a.stl", "12345")
+  refuses(":1: the first word solid expected, got '12345'", "a.stl", "12345")
   refuses(": \"solid\" or 84 bytes and 50 for each of its 0 triangles expected, got 5 bytes", "a.stl", "1234\0")
   refuses(": faces expected, got only faces with a vertex that is not finite", "a.stl", ("\0"):rep(80) .. "\1\0\0\0" .. ("<f"):pack(0 / 0):rep(12) .. "\0\0")
 end

@@ -44,7 +44,7 @@ local function text_rows(source, layout)
       for _, word in ipairs(words(line)) do list[#list + 1] = word end
     end
     if #list ~= width then
-      source:fail(("point %d of %d, with %d numbers,"):format(done, layout.count, width), line)
+      source:fail(("point %d of %d with %d numbers"):format(done, layout.count, width), line)
     end
     for i, word in ipairs(list) do
       list[i] = tonumber(word) or word:lower():find "nan" and 0 / 0 or source:number_of(word, layout.names[i])
@@ -185,7 +185,7 @@ local function read_pcd(source)
   local kind = (head.DATA[2] or ""):lower()
   for _, name in ipairs { "FIELDS", "SIZE", "TYPE" } do
     local list = head[name]
-    if not list or #list ~= #head.FIELDS then source:fail(name .. ", one for each field,", "DATA") end
+    if not list or #list ~= #head.FIELDS then source:fail(name .. " for each field", "DATA") end
   end
   for i = 2, #head.FIELDS do
     local code = PCD_TYPES[head.TYPE[i]:upper() .. head.SIZE[i]]

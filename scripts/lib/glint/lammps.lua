@@ -128,7 +128,7 @@ local function read_atom(source, frame, columns, options)
       x, y, z = x + share[i] * side[1], y + share[i] * side[2], z + share[i] * side[3]
     end
   elseif columns.scaled or options.wrap then
-    local box = frame.box or source:fail("a box with a along x and b in the xy plane, for scaled coordinates,", line)
+    local box = frame.box or source:fail("a box for scaled coordinates, with a along x and b in the xy plane", line)
     if not columns.scaled then x, y, z = boxes.scale(box, x, y, z) end
     if options.wrap then x, y, z = boxes.wrapped(box, x, y, z) end
     x, y, z = boxes.unscale(box, x, y, z)
@@ -157,7 +157,7 @@ local function read_header(source, line, frame)
     elseif item:find "^ATOMS" then
       return item:sub(#"ATOMS" + 1)
     elseif item:find "^ENTRIES" then
-      source:fail("ITEM: ATOMS, as dump atom and dump custom write it,", line)
+      source:fail("ITEM: ATOMS of dump atom or dump custom", line)
     else
       repeat line = source:next() until not line or line:find "^ITEM:" -- skips unused items
       if line then source:back(line) end

@@ -22,7 +22,7 @@ local function numbers(source, text, what, least, most)
   local list = {}
   for word in text:gmatch "%S+" do list[#list + 1] = source:number_of(word, what) end
   if #list < least or #list > (most or least) then
-    source:fail(("%s, %s numbers,"):format(what, most and least .. " to " .. most or least), text)
+    source:fail(("%s: %s numbers"):format(what, most and least .. " to " .. most or least), text)
   end
   return list
 end
@@ -35,7 +35,7 @@ function read.v(picture, source, rest)
     local name, count = item[1], item[2]
     local line = source:next_full()
     local text = (line or ""):match("^%s*" .. name .. "%s(.*)")
-    if not text then source:fail(("%s, %d numbers,"):format(name, count), line) end
+    if not text then source:fail(("%s: %d numbers"):format(name, count), line) end
     picture.view[name] = numbers(source, text, name, count)
   end
   local angle, size = picture.view.angle[1], picture.view.resolution

@@ -173,7 +173,7 @@ local function start(source, number, options)
       if name == "MODEL" then source:fail(is_model and "ENDMDL" or "ATOM, HETATM or END", line) end
       if name ~= "ATOM" and name ~= "HETATM" and name ~= "CRYST" then return nil end
       if line:sub(1, LAST_COLUMN):find("\t", 1, true) then
-        source:fail("a record in columns, with blanks and no tabs,", line)
+        source:fail("a record in columns without tabs", line)
       end
       if name == "ATOM" or name == "HETATM" and options.hetatm ~= false then
         local label, x, y, z = read_atom(source, fields, line)

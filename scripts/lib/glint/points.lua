@@ -60,7 +60,7 @@ local function read_point(source, fields, line, place, separator, count)
   local list = split(source, line, separator)
   fields.line = list
   if #list ~= count then
-    source:fail(("%d columns, as many as in the first line,"):format(count), line)
+    source:fail(("%d columns (as in the first line)"):format(count), line)
   end
   local function number(name) return source:number_of(list[place[name]], name) end
   local label = place.label and list[place.label] or DEFAULT_LABEL

@@ -21,7 +21,7 @@ return function(gr, shape_of, methods)
     gr[call] = function(self, map, ...)
       local node = shape_of(call, self)
       if not maps[map] and type(map) ~= "string" then
-        check.refuse(call, "map", "normal map, or the name of a file,", map)
+        check.refuse(call, "map", "normal map or name of a file", map)
       end
       if not normal_map.lies_on(node) then
         return check.tell(node, "gr.%s: spheres, boxes, cylinders and cones have normal maps, and %s '%s' has none",

@@ -88,7 +88,7 @@ local readers = {
     elseif is_index(a) and is_share(b) then
       record.transmission, record.ior = b, a
     else
-      return "a reflectivity and a transparency 0 .. 1, or an index up to 4, expected"
+      return "expected a reflectivity and a transparency 0 .. 1, or an index up to 4"
     end
   end,
   function(record, a, b, c)
@@ -134,7 +134,7 @@ local function read_more(record, call, ...)
     end
   end
   read_numbers(record, call, numbers)
-  if #others > 0 then leave_out(call, others, "numbers, and the name of a picture, expected") end
+  if #others > 0 then leave_out(call, others, "expected numbers and the name of a picture") end
 end
 
 -- Returns the model of the highlight. An exponent of 0 makes it 1 wherever light arrives, as n.h > 0 there, while r.v
