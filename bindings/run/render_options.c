@@ -110,7 +110,7 @@ static void describe(const detail *option, char out[256])
         snprintf(out, 256, "file name");
         break;
     case REGION:
-        snprintf(out, 256, "region X,Y,WIDTH,HEIGHT in whole pixels, from the top left,");
+        snprintf(out, 256, "region X,Y,WIDTH,HEIGHT in whole pixels from the top left");
         break;
     case PASSES:
         for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)

@@ -17,7 +17,7 @@ usage() {
 parts=$1 width=${2%x*} height=${2#*x} folder=$3
 case $part$parts$width$height in *[!0-9]*) usage ;; esac
 if [ "$part" -lt 1 ] || [ "$part" -gt "$parts" ] || [ "$parts" -gt "$height" ]; then
-    echo "part.sh: a part from 1 to $parts, at most one for each of $height rows, expected, got $part" >&2
+    echo "part.sh: expected a part from 1 to $parts (at most one for each of $height rows), got $part" >&2
     exit 2
 fi
 shift 3

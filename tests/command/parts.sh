@@ -96,7 +96,7 @@ says "the frame is named" 'region: whole numbers x, y, width and height within t
 for wrong in 1,2,3 1,2,3,4,5 -1,0,2,2 0,0,0,1 0,0,1.5,1 a 0,0,1,1x; do
     exits 2 "--region $wrong" "$scene" --region "$wrong" -o none
 done
-says "what is expected" "--region: region X,Y,WIDTH,HEIGHT in whole pixels, from the top left, expected, got '0,0,1,1x'"
+says "what is expected" "--region: region X,Y,WIDTH,HEIGHT in whole pixels from the top left expected, got '0,0,1,1x'"
 exits 2 "a scaled depth" "$scene" --size $size --region 0,0,9,9 --passes depth -o d.png
 says "why" 'depth in a .png is scaled'
 exits 2 "--region of another command" join parts/1.png --region 0,0,1,1 -o x.png
