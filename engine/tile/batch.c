@@ -487,8 +487,8 @@ static void cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_
         glint_media_cross(media, medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
 }
 
-/// Computes the unit direction of the straight ray of sample i. It is bit-identical to the direction of a secondary ray,
-/// which is unit; the direction of a camera ray is normalised.
+/// Computes the unit direction of the straight ray of sample i. It is bit-identical to the direction of a secondary
+/// ray, which is unit; the direction of a camera ray is normalised.
 static void straight_direction(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double out[3])
 {
     for (int c = 0; c < 3; c++)

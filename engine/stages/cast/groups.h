@@ -1,6 +1,6 @@
 // groups: the groups of a tile in which a primitive may be visible, by its cells and depth, and the lanes of
-// these groups that come near it. All groups are tested before the first is decided, without branches on test results: such
-// branches are often mispredicted, which costs more than the tests. Contract: stages.h, cast.
+// these groups that come near it. All groups are tested before the first is decided, without branches on test
+// results: such branches are often mispredicted, which costs more than the tests. Contract: stages.h, cast.
 #ifndef GLINT_CAST_GROUPS_H
 #define GLINT_CAST_GROUPS_H
 
