@@ -366,7 +366,7 @@ function tests.errors()
   raises("camera.focus: number > 0 or {x, y, z} expected, got nan", {}, { focus = 0 / 0 })
   raises('camera.focus: number > 0 or {x, y, z} expected, got string "near"', { focus = "near" })
   raises("camera.focus: a point in front of the eye expected, got {0, 0, 12}", { aperture = 1, focus = { 0, 0, 12 } })
-  raises("camera.focus: number > 0 or {x, y, z} expected where", { aperture = 1 }, { direction = { 0, 0, -1 } })
+  raises("camera.focus: a camera with an aperture and a direction needs a focus: a number > 0, or {x, y, z}", { aperture = 1 }, { direction = { 0, 0, -1 } })
   raises("camera.aperture: expected a number <= 10 (1e+12 times the focus), got 11", { aperture = 11, focus = 1e-11 })
   for _, blades in ipairs { 1, 2, 4.5, -3, 65 } do
     raises(("camera.blades: 0 or a whole number 3 .. 64 expected, got %g"):format(blades), { blades = blades })
