@@ -63,10 +63,10 @@ function the.table(study)
     out[#out + 1] = row_for_people(row)
   end
   out[#out + 1] = format("\n* the script's own setting. wall ms, CPU ms: medians of at least %d runs of rendering, "
-    .. "tone mapping and encoding a\nwhole frame, by the clock and on all processors. +-: half the quartile range of the "
-    .. "CPU time. x: the CPU time divided\nby that of the fastest setting; all comparisons use CPU time. codes: the "
-    .. "largest error, in 8-bit steps. >1, >8: the\nfraction of pixels with a larger error. object, shadow: the number "
-    .. "of pixels with a wrong object or a wrong shadow.\n", study.runs)
+    .. "tone mapping and encoding a\nwhole frame, by the clock and on all processors. +-: half the quartile range of "
+    .. "the CPU time. x: the CPU time divided\nby that of the fastest setting; all comparisons use CPU time. codes: "
+    .. "the largest error, in 8-bit steps. >1, >8: the\nfraction of pixels with a larger error. object, shadow: the "
+    .. "number of pixels with a wrong object or a wrong shadow.\n", study.runs)
   out[#out + 1] = rows_together(study)
   if #study.left_out > 0 then out[#out + 1] = "left out:\n" end
   for _, line in ipairs(study.left_out) do out[#out + 1] = "  " .. line .. "\n" end
