@@ -51,12 +51,12 @@ static bool add_step(glint_hidden_parts *parts, double from, double to)
     return true;
 }
 
-/// Casts a ray to the middle of each step of a curve.
+/// Casts a ray to the middle of each step of a part of a curve, `length` pixels long. Returns false if out of memory.
 static bool find_parts(const glint_stages *stages, const glint_geometry_table *geometry, const glint_overlays *overlays,
-                       const glint_pointer *p, rays *r, glint_hidden_parts *out)
+                       const glint_pointer *p, const double range[2], double length, rays *r, glint_hidden_parts *out)
 {
-    const size_t count = (size_t)ceil(STEPS * p->length) + 1;
-    const double step = (p->range[1] - p->range[0]) / (double)count;
+    const size_t count = (size_t)ceil(STEPS * length) + 1;
+    const double step = (range[1] - range[0]) / (double)count;
     glint_cast_args cast = {
         .group_count = 1, .active = &r->active, .geometry = geometry, .t = r->t, .prim = r->prim, .hits = &r->hits
     };
@@ -69,16 +69,18 @@ static bool find_parts(const glint_stages *stages, const glint_geometry_table *g
         for (size_t lane = 0; lane < GLINT_GROUP; lane++) {
             double point[3];
             const double at = (double)(i + (lane < lanes ? lane : lanes - 1)) + 0.5;
-            glint_pointer_at(p, overlays->camera.orthographic, p->range[0] + at * step, point);
+            glint_pointer_at(p, overlays->camera.orthographic, range[0] + at * step, point);
             aim(&overlays->camera, point, r, (int)lane);
         }
         r->active = (uint16_t)((1u << lanes) - 1);
         r->hits = 0;
         stages->geometry[GLINT_DOUBLE].cast_rays(&cast);
         for (size_t lane = 0; lane < lanes; lane++) {
-            const double from = p->range[0] + (double)(i + lane) * step;
+            const double from = range[0] + (double)(i + lane) * step;
             const bool hidden = (r->hits >> lane & 1) && r->t[lane] * r->scale[lane] < 1 - MARGIN;
-            if (hidden && !add_step(out, from, p->range[0] + (double)(i + lane + 1) * step))
+            const size_t next = i + lane + 1; // the last step ends exactly where the next piece begins
+            const double to = next < count ? range[0] + (double)next * step : range[1];
+            if (hidden && !add_step(out, from, to))
                 return false;
         }
     }
@@ -103,8 +105,12 @@ static glint_status find_all(const glint_stages *stages, const glint_plan *plan,
         if (!hides(&overlays->of[i]))
             continue;
         glint_pointer_find(overlays, &overlays->of[i], pointer);
-        if (pointer->count > 1 && !find_parts(stages, &table, overlays, pointer, r, &overlays->hidden[i]))
-            status = glint_fail_nomem(error);
+        for (int piece = 0; piece + 1 < pointer->count && !status; piece++) {
+            double range[2];
+            const double length = glint_pointer_piece(overlays, pointer, piece, range);
+            if (length >= 0 && !find_parts(stages, &table, overlays, pointer, range, length, r, &overlays->hidden[i]))
+                status = glint_fail_nomem(error);
+        }
     }
     free(pointer);
     free(r);

@@ -75,10 +75,28 @@ bool glint_pointer_is_point(const glint_overlay_desc *desc)
     return desc->from[0] == desc->to[0] && desc->from[1] == desc->to[1] && desc->from[2] == desc->to[2];
 }
 
-static void find_line(const glint_overlays *overlays, const glint_overlay_desc *desc, glint_pointer *p)
+/// Cuts piece `i` of a curve at a rectangle a little larger than the picture. Returns false if it lies outside.
+/// range  in: the first and the last share of the piece; out: those inside.
+static bool cut_piece(const glint_overlays *overlays, const glint_pointer *p, int i, double range[2])
 {
     const double sides[2] = { overlays->width, overlays->height }, margin = fmax(sides[0], sides[1]) / 4;
     const double low[2] = { -margin, -margin }, high[2] = { sides[0] + margin, sides[1] + margin };
+    const double offset[2] = { p->pixel[i + 1][0] - p->pixel[i][0], p->pixel[i + 1][1] - p->pixel[i][1] };
+    return cut_to_rect(p->pixel[i], offset, low, high, range);
+}
+
+double glint_pointer_piece(const glint_overlays *overlays, const glint_pointer *p, int i, double range[2])
+{
+    double share[2] = { fmax(p->range[0] - i, 0), fmin(p->range[1] - i, 1) };
+    const bool inside = cut_piece(overlays, p, i, share);
+    range[0] = i + share[0];
+    range[1] = i + share[1];
+    const double *from = p->pixel[i], *to = p->pixel[i + 1];
+    return inside ? (share[1] - share[0]) * length_of(to[0] - from[0], to[1] - from[1]) : -1;
+}
+
+static void find_line(const glint_overlays *overlays, const glint_overlay_desc *desc, glint_pointer *p)
+{
     p->count = 2;
     vec_copy(p->world[0], desc->from);
     vec_copy(p->world[1], desc->to);
@@ -91,7 +109,7 @@ static void find_line(const glint_overlays *overlays, const glint_overlay_desc *
     }
     const double offset[2] = { p->pixel[1][0] - p->pixel[0][0], p->pixel[1][1] - p->pixel[0][1] };
     p->range[1] = 1;
-    if (glint_pointer_is_point(desc) || !cut_to_rect(p->pixel[0], offset, low, high, p->range))
+    if (glint_pointer_is_point(desc) || !cut_piece(overlays, p, 0, p->range))
         p->count = 0;
     p->length = (p->range[1] - p->range[0]) * length_of(offset[0], offset[1]);
 }
@@ -194,8 +212,9 @@ static void add_hidden(glint_strokes *strokes, const glint_layout *layout, const
     const double pixel = (p->range[1] - p->range[0]) / p->length, width = 2 * strokes->half * pixel;
     if (layout->desc->hidden == GLINT_HIDDEN_HIDE)
         return;
-    for (double at = part[0] + (PERIOD - DASH) * width; at < fmin(part[1], last); at += PERIOD * width)
-        add_part(strokes, p, at, fmin(fmin(at + DASH * width, part[1]), last));
+    const double end = fmin(part[1], last), period = PERIOD * width;
+    for (double at = part[0] + period - DASH * width; at < end && at + period > at; at += period)
+        add_part(strokes, p, at, fmin(at + DASH * width, end));
 }
 
 /// Adds the curve up to a parameter.

@@ -20,6 +20,9 @@ typedef struct glint_pointer {
 
 /// Computes the curve of an overlay that points.
 void glint_pointer_find(const glint_overlays *overlays, const glint_overlay_desc *desc, glint_pointer *out);
+/// Computes the parameters of the part of piece `i`, between points i and i + 1, that lies in or close to the picture.
+/// Returns its length in pixels; below 0: no part does.
+double glint_pointer_piece(const glint_overlays *overlays, const glint_pointer *pointer, int i, double range[2]);
 /// Returns whether an arrow or a line ends where it begins.
 bool glint_pointer_is_point(const glint_overlay_desc *desc);
 /// Returns the point of the curve with a parameter.

@@ -260,6 +260,17 @@ function tests.hidden_parts()
   end
 end
 
+-- Rays are cast only where a curve lies in the picture or close to it: 1e8 pixels of an arc would take minutes.
+function tests.parts_outside_the_picture()
+  local scene = scene_of(CAMERAS.perspective, { glint.sphere { center = { 0, 0, 0 }, radius = 1 } })
+  for _, radius in ipairs { 1e7, 1e20, 1e300 } do
+    scene:add(glint.arc { at = { 0, 0, -1 }, from = { 1, 0, 0 }, to = { 0, 1, 0 }, radius = radius, hidden = "dashed" })
+  end
+  local start = os.clock()
+  draw(scene)
+  check(os.clock() - start < 20, "%g s", os.clock() - start)
+end
+
 -- A line that begins on a surface and leaves it is not hidden by it; a hidden tip has neither head nor label.
 function tests.ends_on_surfaces()
   local camera = CAMERAS.perspective
