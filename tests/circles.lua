@@ -21,7 +21,7 @@ for _, object in ipairs(arg) do
 end
 assert(#files > 0, "objects of the engine expected")
 
--- The files that each file calls, directly or indirectly.
+-- Returns, for each file, the files that it calls directly or indirectly.
 local function reach(from)
     local found, left = {}, { from }
     while #left > 0 do

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define CHANNELS 3
-#define PRINTED_MAX 200 ///< pixels printed; all are counted
+#define PRINTED_MAX 200 ///< most pixels that are printed; all are counted
 
 typedef struct picture {
     png_structp png;
@@ -54,7 +54,7 @@ static int code(const png_byte *pixel, int channel)
     return pixel[2 * channel] << 8 | pixel[2 * channel + 1];
 }
 
-/// The largest difference of a pixel's channels, in 16-bit steps.
+/// Returns the largest difference between the channels of two pixels, in 16-bit steps.
 static int pixel_difference(const png_byte *a, const png_byte *b)
 {
     int largest = 0;
@@ -90,7 +90,7 @@ static totals compare(const picture *a, const picture *b)
 
 #define BLOCK 4
 
-/// The sum of a channel over the block at (x, y).
+/// Sums a channel over the block at (x, y).
 static double block_sum(const picture *p, png_uint_32 x, png_uint_32 y, int channel)
 {
     double sum = 0;
@@ -99,7 +99,7 @@ static double block_sum(const picture *p, png_uint_32 x, png_uint_32 y, int chan
     return sum;
 }
 
-/// Root mean square of the differences of blocks, relative to full scale.
+/// Returns the root mean square of the differences of block means, relative to full scale.
 static double compare_blocks(const picture *a, const picture *b)
 {
     double squares = 0, count = 0;

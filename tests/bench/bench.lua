@@ -1,8 +1,8 @@
 -- make bench: all sides, one table, one CSV.   lua5.4 tests/bench/bench.lua BUILD COMPILER [PART,PART...|all] [RUNS]
 --
 -- Parts: frame reuse jobs many lamps ways solids programs encode stages peers, and slow (minutes), which runs only on
--- request. All but the slow renderers run at least 7 times, shuffled in each round, for medians and quartiles. The
--- part `readme`, on by default, prints the README's table.
+-- request. All measurements except the slow renderers run at least 7 times, in a random order in each round. The
+-- table shows medians and quartiles. The part `readme`, on by default, prints the README's table.
 package.path = "tests/bench/?.lua;" .. package.path
 local cases, measure = require "cases", require "measure"
 
@@ -32,7 +32,7 @@ local function parts_of(text)
   return parts
 end
 
--- The ids of measurements that the rows of these parts need.
+-- The ids of the measurements that the rows of these parts need.
 local function wanted_by(parts)
   local wanted = {}
   for _, row in ipairs(cases.rows) do
@@ -67,7 +67,7 @@ end
 local by_id = {}
 for _, m in ipairs(cases.measurements) do by_id[m[1]] = m end
 
--- "id:name" -> samples, or nil and the reason why there are none
+-- Returns the samples of "id:name", or nil and the reason why there are none.
 local function samples_of(name)
   local id, value = name:match "^(.-):(.+)$"
   local m = assert(by_id[id], name)
@@ -81,7 +81,7 @@ local function number(x)
   return ("%.3g"):format(x)
 end
 
--- Median (lower .. upper quartile)
+-- Formats the median and, in parentheses, the quartiles: median (lower .. upper).
 local function cell(samples)
   if not samples then return "-" end
   local low, median, high = measure.quartiles(samples)
@@ -101,7 +101,7 @@ local function verdict(row, ratio)
   return ("%s %-5s %s"):format(row.more and ">=" or "<=", number(row.bar), met and "met" or "MISSED")
 end
 
--- A peer's other time: its processor time if the row has its clock time, and vice versa.
+-- Formats a peer's other time: the processor time if the row shows the clock time, and vice versa.
 local function beside(name)
   local id, value = name:match "^(.-):(.+)$"
   local samples = by_id[id].samples or {}
@@ -147,7 +147,7 @@ local function print_rows(parts)
   end
 end
 
--- Nanoseconds per pixel of every stage, one column per instruction set.
+-- Prints a table of the nanoseconds per pixel of every stage, with one column per instruction set.
 local function print_stages()
   local names, seen = {}, {}
   for _, id in ipairs(cases.stage_sides) do
@@ -167,7 +167,7 @@ local function print_stages()
   end
 end
 
--- Rows of Markdown, milliseconds.
+-- Prints the README's table: rows of Markdown, in milliseconds.
 local function print_readme()
   print "\n| scene | glint, double | hand-written, float | Embree, float | POV-Ray |\n| --- | --- | --- | --- | --- |"
   for _, row in ipairs(cases.readme) do

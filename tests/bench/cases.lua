@@ -29,7 +29,7 @@ local measurements = {
   { "u.float", "unlike glint", "float=1", runs = 1 },
   { "u.1k", "unlike embree", "scene=1k", runs = 1 },
 
-  -- rendering only, in one process, successive frames of a job
+  -- the time of rendering only, in one process, of successive frames of a job
   { "g.moved", "glint", "reuse change=light" },
   { "g.ball", "glint", "reuse change=sphere" },
   { "g.shutter.light", "glint", "reuse change=light times=8" },
@@ -84,7 +84,7 @@ local measurements = {
   { "e.mesh", "embree", "frame scene=mesh" },
   { "e.mesh100k", "embree", "frame scene=mesh100k" },
 
-  -- rays in all directions: indirect light
+  -- indirect light: rays in all directions
   { "g.ways", "glint", "frame indirect=16" },
   { "g.ways.1k", "glint", "frame scene=1k indirect=16" },
   { "c.ways", "plain", "frame indirect=16", runs = 3 },
@@ -94,7 +94,7 @@ local measurements = {
   { "g.mirror.floor", "glint", "frame scene=mirrorfloor" },
   { "g.glass.floor", "glint", "frame scene=glassfloor area=1" },
 
-  -- all 16 samples only where needed
+  -- adaptive sampling: all 16 samples only where they are needed
   { "g.adaptive", "glint", "frame samples=16 adaptive=1" },
   { "g.molecule.adaptive", "glint", "frame scene=molecule samples=16 adaptive=1" },
   { "g.glassball", "glint", "frame scene=glassball area=1" },
@@ -110,7 +110,7 @@ local measurements = {
   { "g.encode", "glint", "encode out=$OUT" },
   { "h.encode", "hand", "encode" },
 
-  -- a pass with the derivative of the picture
+  -- a frame with a pass for the derivative of the picture
   { "g.eye", "glint", "frame derivative=eye" },
   { "g.lamp", "glint", "frame derivative=lamp" },
   { "g.shininess", "glint", "frame derivative=shininess" },
@@ -135,7 +135,7 @@ local measurements = {
   { "g.avx2", "glint", "stages isa=avx2" },
   { "g.avx512", "glint", "stages isa=avx512" },
 
-  -- the slow ones; a job's time is 10 times that of its first 6 frames
+  -- the slow renderers; the time of a job is 10 times the time of its first 6 frames
   { "p.frame", "povray", "frame", runs = 3 },
   { "p.bare", "povray", "frame shadows=0", runs = 3 },
   { "p.4", "povray", "frame samples=4", runs = 3 },

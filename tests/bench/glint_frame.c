@@ -11,13 +11,13 @@ enum { ROUNDS = 15, LIMIT_S = 20, LAST = 15 };
 typedef struct frame_state {
     glint_renderer *renderer;
     glint_plan *plan;
-    glint_frame_stats stats; ///< of the last frame
-    double processor_ms[LAST]; ///< of the last frames
+    glint_frame_stats stats; ///< the statistics of the last frame
+    double processor_ms[LAST]; ///< the processor times of the last frames
     int frames;
 } frame_state;
 
-/// Renders a frame and returns its milliseconds. *processor_ms, if not NULL: the processor time, without the share
-/// for pixel values.
+/// Renders a frame and returns its milliseconds. If processor_ms is not NULL, *processor_ms gets the processor time,
+/// without the share for pixel values.
 static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats, double *processor_ms)
 {
     glint_error error;
@@ -55,7 +55,7 @@ static glint_renderer *renderer_or_exit(const bench_options *options)
     return renderer;
 }
 
-/// Ends the measurement of a frame that takes too long. The driver reads the message and continues.
+/// Ends the program when a frame takes too long. The driver reads the message and continues.
 static void give_up(int signal)
 {
     (void)signal;
@@ -64,8 +64,8 @@ static void give_up(int signal)
     _exit(written > 0 ? 0 : 1);
 }
 
-/// Prints the peak memory of the process without this program's own scene, including the film; and the size of its
-/// spheres stored as doubles, each with a material.
+/// Prints the peak memory of the process with the film, but without this program's own copy of the scene; and the
+/// size of the spheres, each stored as doubles with a material.
 static void say_memory(const bench_scene *scene)
 {
     struct rusage usage;
@@ -99,7 +99,7 @@ void side_run_frame(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// Renders a small frame of a new scene. Returns the time to build its BVH. *ready_ms: the whole time from the
+/// Renders a small frame of a new scene. Returns the time to build its BVH. *ready_ms gets the whole time from the
 /// described scene to the film, including plan and snapshot.
 static double build_once(const bench_options *options, double *ready_ms)
 {
@@ -160,8 +160,8 @@ void side_run_stages(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// Renders successive frames of a job, afresh with one renderer and with reuse in another. With the option `times`,
-/// the second one renders several shutter times of each frame.
+/// Renders successive frames of a job, without reuse in one renderer and with reuse in another. With the option
+/// `times`, the second renderer computes several shutter times of each frame.
 void side_run_reuse(const bench_options *options)
 {
     bench_options fresh_options = *options;

@@ -42,7 +42,7 @@ void side_run_encode(const bench_options *options)
 {
     glint_error error;
     side_scene scene = side_scene_create(options);
-    bench_options fresh = *options; // without reuse a picture has no stamps, and every band is deflated again
+    bench_options fresh = *options; // without reuse a picture has no stamps, and the writer deflates every band again
     fresh.no_reuse = true;
     glint_renderer *renderer = side_renderer_create(&fresh);
     glint_plan *plan = side_plan_create(&scene, options);
@@ -60,7 +60,7 @@ void side_run_encode(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// Times the whole job from the described scene to the last synced file.
+/// Times the whole job, from the described scene until the last file is synced to disk.
 void side_run_job(const bench_options *options)
 {
     glint_error error;

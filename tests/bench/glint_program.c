@@ -1,4 +1,5 @@
-/// Programs in the frame's kernel, 128 points at a time: nanoseconds per point, including the store as reflectances.
+/// Times programs in the frame's kernel, 128 points at a time: nanoseconds per point, including the time to store the
+/// results as reflectances.
 #include <string.h>
 
 #include "engine/program/program.h"
@@ -103,7 +104,7 @@ static size_t cells(glint_value out[6])
 typedef struct named {
     const char *name;
     glint_program_kind kind;
-    size_t (*make)(glint_value out[6]); ///< returns the number of outputs
+    size_t (*make)(glint_value out[6]); ///< builds the program and returns the number of outputs
 } named;
 
 static const named programs[] = {

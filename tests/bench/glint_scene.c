@@ -18,8 +18,8 @@ static void widen(const float from[3], double to[3])
         to[c] = (double)from[c];
 }
 
-/// Sets the named pattern's program: "phong" as every material's shader, others as the first material's diffuse
-/// reflectance.
+/// Sets the program of the named pattern: "phong" as the shader of every material, the others as the diffuse
+/// reflectance of the first material.
 static void set_program(const side_scene *s, int material, double number, glint_material_desc *d)
 {
     const bool shader = strcmp(s->pattern, "phong") == 0;
@@ -58,7 +58,8 @@ static void add_shape(side_scene *s, glint_shape *shape)
     glint_shape_release(shape);
 }
 
-/// Up to 100 spheres are separate shapes, as a script would create them. Otherwise all except the last are one shape.
+/// Adds up to 100 spheres as separate shapes, as a script would create them. With more spheres, all except the last
+/// are elements of one shape.
 static void add_spheres(side_scene *s)
 {
     const bench_scene *p = &s->plain;
@@ -202,7 +203,7 @@ static void set_camera(side_scene *s, const bench_options *options)
     glint_camera_release(camera);
 }
 
-/// Adds one of the lights. `lamp` is the last one added.
+/// Adds light number `i` of the scene. `lamp` is the light that was added last.
 static void add_lamp(side_scene *s, const bench_options *options, int i)
 {
     glint_error error;
@@ -304,8 +305,8 @@ static glint_render_desc frame_desc(const bench_options *options)
     return d;
 }
 
-/// Sets the derivative's parameter: a step of the eye or the light to the right, or of the exponent of all shiny
-/// materials. Returns the number of fields.
+/// Sets the parameter of the derivative: a step of the eye or of the light to the right, or a step of the exponent of
+/// all shiny materials. Returns the number of fields.
 static size_t find_slopes(const side_scene *s, const char *derivative, glint_slope *out)
 {
     size_t count = 0;

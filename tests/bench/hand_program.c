@@ -1,6 +1,6 @@
-/// Phong by hand, with the arithmetic of a shader's program: doubles, eight per vector, and S in float with the
-/// engine's polynomials, so that both have seven digits. Everything stays in registers from the first load to the
-/// store, and products and sums are fused.
+/// Phong by hand, with the arithmetic of a shader's program: doubles, eight per vector, and the highlight in float
+/// with the engine's polynomials, so that both programs are right to seven digits. Everything stays in registers from
+/// the first load to the store, and products and sums are fused.
 #include "engine/stages/simd/coefficients.h"
 #include "tests/bench/hand_program.h"
 #include "tests/bench/options.h"
@@ -16,7 +16,7 @@ static inline vd dot_of(const program_points *p, int a, const vd b[3], int at)
     return load(p, a, at) * b[0] + load(p, a + 1, at) * b[1] + load(p, a + 2, at) * b[2];
 }
 
-/// Returns r.v; *cosine: n.l.
+/// Returns r.v. *cosine gets n.l.
 static inline vd reflected(const program_points *p, int at, vd *cosine)
 {
     const vd n[3] = { load(p, GLINT_INPUT_N_X, at), load(p, GLINT_INPUT_N_Y, at), load(p, GLINT_INPUT_N_Z, at) };
@@ -92,7 +92,7 @@ static double time_points(void *state)
     const double start = bench_now_ms();
     for (int i = 0; i < PROGRAM_REPEATS; i++) {
         phong(state);
-        __asm__ volatile("" ::: "memory"); // prevents reuse between rounds
+        __asm__ volatile("" ::: "memory"); // keeps the compiler from reusing results between rounds
     }
     return bench_now_ms() - start;
 }

@@ -1,5 +1,5 @@
--- Patterns in plain Lua, one point at a time, and the time of a trace. LUA_CPATH must find glint.so. Prints "name
--- unit value": nanoseconds per point of checker and marble as in glint_program.c, microseconds per trace.
+-- Times patterns in plain Lua, one point at a time, and the tracing of a pattern. LUA_CPATH must find glint.so. Prints
+-- "name unit value": nanoseconds per point of checker and marble as in glint_program.c, microseconds per trace.
 local glint = require "glint"
 
 -- Runs a function for at least a tenth of a second. Returns seconds per call.
@@ -37,7 +37,7 @@ local function marble(i)
   return 0.9 + share * (0.05 - 0.9), 0.9 + share * (0.15 - 0.9), 0.9 + share * (0.25 - 0.9)
 end
 
--- Bricks with a grain. Each number could change in the next frame, so that the trace equals a frame's trace.
+-- Bricks with a grain. Any number could change in the next frame, so a trace costs as much as in a frame.
 local height = 1
 local bricks = glint.pattern(function(p)
   local row = glint.floor(p.y / height)

@@ -19,7 +19,7 @@ local function installed(command)
   return os.execute("command -v " .. command .. " >/dev/null 2>&1") == true
 end
 
--- The command of a side, or nil and the reason. "unlike SIDE" compares that side's picture with glint's.
+-- Returns the command that runs a side, or nil and the reason. "unlike SIDE" compares the picture of SIDE with glint's.
 local function command_of(side, build)
   if side == "povray" or side == "tachyon" then
     if not installed(side) then return nil, absent[side] end
@@ -33,7 +33,7 @@ local function command_of(side, build)
   return compared and ("BUILD='%s' tests/bench/unlike.sh %s"):format(build, name) or program
 end
 
--- The lines "name unit value" of a command; nil and the reason when it fails or refuses.
+-- Runs a command and returns its lines "name unit value"; nil and the reason when the command fails or refuses.
 local function run(command)
   local pipe = assert(io.popen(command, "r"))
   local values, refusal = {}, nil
@@ -74,7 +74,7 @@ local function shuffle(list)
   end
 end
 
--- The wanted measurements whose side is available, with `command` set. The others get `refused`.
+-- Returns the wanted measurements whose side is available, with `command` set. Sets `refused` in the others.
 local function selected_of(measurements, options)
   local selected = {}
   for _, m in ipairs(measurements) do
@@ -89,7 +89,7 @@ local function selected_of(measurements, options)
   return selected
 end
 
--- Runs every wanted measurement. Each gets `samples` by name, or `refused`.
+-- Runs every wanted measurement, and stores its `samples` by name, or the reason `refused`.
 -- options: build, runs, wanted (set of ids), folder (for files), progress (a line on stderr)
 function M.run(measurements, options)
   local selected = selected_of(measurements, options)
@@ -109,7 +109,7 @@ function M.run(measurements, options)
   if options.progress then io.stderr:write("\r", (" "):rep(72), "\r") end
 end
 
--- Lower quartile, median and upper quartile.
+-- Returns the lower quartile, the median and the upper quartile.
 function M.quartiles(samples)
   local sorted = table.move(samples, 1, #samples, 1, {})
   table.sort(sorted)

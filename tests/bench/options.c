@@ -104,7 +104,7 @@ double bench_median_of(double *values, int count)
 
 enum { COUNT_MAX = 31, WARM_MS = 100, MEASURE_MS = 300 };
 
-/// Returns the number of calls.
+/// Calls `measure` repeatedly and stores the results in `values`. Returns the number of calls.
 static int run(double (*measure)(void *state), void *state, double values[COUNT_MAX], double processor[COUNT_MAX])
 {
     int count = 0;

@@ -7,34 +7,38 @@
 #include <stddef.h>
 
 typedef struct bench_options {
-    const char *mode; ///< "frame", "job", ...: the first word
-    const char *scene; ///< from scenes.h; default "workshop"
-    const char *isa; ///< for glint; NULL: the best
+    const char *mode; ///< what to measure, the first word: "frame", "job", ...
+    const char *scene; ///< name of a scene in scenes.h; default "workshop"
+    const char *isa; ///< instruction set, only for glint; NULL: the best one
     const char *out; ///< a file or folder to write to
     const char *with; ///< a file to compare with
-    const char *change; ///< of a job: "light", "sphere", "shininess", "number" (in the pattern) or "none" (default)
-    const char *pattern; ///< "checker", "octaves" or "marble" for the first material, or "phong": a shader for all
-        ///< materials; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function". "none"
+    const char *change; ///< the change between frames of a job: "light", "sphere", "shininess", "number" (in the
+        ///< pattern) or "none" (default)
+    const char *pattern; ///< "checker", "octaves" or "marble" for the first material, or "phong", a shader for all
+        ///< materials; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function"; default
+        ///< "none"
+    const char *derivative; ///< parameter of a derivative pass, only for glint: "eye", "lamp", "shininess" or "none"
         ///< (default)
-    const char *derivative; ///< a derivative pass: "eye", "lamp" or "shininess"; only glint. "none" (default)
-    int threads; ///< default 1
-    int samples; ///< per pixel; default 1
+    int threads; ///< number of threads; default 1
+    int samples; ///< samples per pixel; default 1
     int indirect; ///< paths of indirect light per pixel, with one bounce; default 0
-    int times; ///< of a shutter open from one frame of a job to the next; only glint's `reuse`; 0 (default): none
-    int lamps; ///< point lights that share the light, default 1; above 1 only for glint and POV-Ray
-    bool is_float; ///< only glint
-    bool no_reuse; ///< only glint
-    bool shadows; ///< default true
-    bool lens; ///< the scene's lens is open; only glint and POV-Ray
-    bool area; ///< 16 samples of a sphere light instead of a point light
-    bool adaptive; ///< all 16 samples only where neighbours differ by more than a tenth; only glint and POV-Ray
+    int times; ///< times of a shutter that is open from one frame of a job to the next, only for glint's `reuse`; 0
+        ///< (default): none
+    int lamps; ///< number of point lights that share the light, default 1; above 1 only for glint and POV-Ray
+    bool is_float; ///< single precision; only for glint
+    bool no_reuse; ///< reuse switched off; only for glint
+    bool shadows; ///< whether the light casts shadows; default true
+    bool lens; ///< whether the scene's lens is open; only for glint and POV-Ray
+    bool area; ///< whether 16 samples of a sphere light replace the point light
+    bool adaptive; ///< whether pixels take all 16 samples only where neighbours differ by more than a tenth; only for
+        ///< glint and POV-Ray
 } bench_options;
 
 /// Ends the program with a message for an unknown word.
 bench_options bench_options_read(int argc, char **argv);
 
 double bench_now_ms(void);
-/// The processor time of this program so far, over all threads.
+/// Returns the processor time of this program so far, summed over all threads, in milliseconds.
 double bench_processor_ms(void);
 
 /// Prints one measurement in the driver's format: name, unit, value.
@@ -44,10 +48,10 @@ void bench_say(const char *name, const char *unit, double value);
 /// times within three tenths of a second. Returns the median.
 double bench_median(double (*measure)(void *state), void *state);
 
-/// The same, printed as "render", and the median processor time of the calls as "cpu".
+/// Like bench_median, but prints the median as "render", and the median processor time of the calls as "cpu".
 void bench_say_render(double (*measure)(void *state), void *state);
 
-/// Median of the sorted `values`.
+/// Returns the median of the sorted `values`.
 double bench_median_of(double *values, int count);
 
 /// Ends the program.

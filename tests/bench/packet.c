@@ -8,7 +8,7 @@
 
 static vec wide_vector(const double v[3]) { return (vec) { all((float)v[0]), all((float)v[1]), all((float)v[2]) }; }
 
-/// Lane k of a block is the pixel (k % 4, k / 4). Its offset is included in the corner.
+/// Lane k of a block is the pixel (k % 4, k / 4). The lanes of `corner` include the offset of that pixel.
 static void set_camera(packet_scene *s)
 {
     bench_camera camera = bench_camera_of(&s->plain);
@@ -20,7 +20,8 @@ static void set_camera(packet_scene *s)
     s->corner = add_scaled(add_scaled(wide_vector(camera.corner), s->right, across), s->down, along);
 }
 
-/// A Hammersley set: k + 1/2 over the count, and the reversed bits of k. A single sample is at the pixel's centre.
+/// Places the samples as a Hammersley set: sample k has the coordinates (k + 1/2) / count and the reversed bits of k.
+/// A single sample is at the pixel's centre.
 static void set_samples(packet_scene *s)
 {
     int count = s->options.samples;
@@ -34,7 +35,8 @@ static void set_samples(packet_scene *s)
     }
 }
 
-/// A spiral of points that covers the light's sphere evenly, and a rotation of it for each pixel of a block.
+/// Places the light's samples on a spiral that covers the sphere evenly, and chooses a rotation of the spiral for
+/// each pixel of a block.
 static void set_light(packet_scene *s)
 {
     const double turn = 2.39996322972865332; // the golden angle

@@ -5,9 +5,10 @@
 
 #include "tests/bench/packet.h"
 
-/// The nearest hits of rays from the eye. `dir` has unit length.
+/// Returns the nearest hits of rays from the eye. `dir` has unit length.
 static inline packet_hit trace(const packet_scene *s, vec dir);
-/// The lanes of `mask` with an occluder between the point and the light at `distance` along `l`.
+/// Returns the lanes of `mask` that have an occluder between the point and the light, which is at `distance` along
+/// `l`.
 static inline vm hidden(const packet_scene *s, vec point, vec l, vf distance, vm mask);
 
 typedef struct light_sum {
@@ -72,7 +73,7 @@ static inline void add_rays(const packet_scene *s, vec dir, vf rgb[3])
     }
 }
 
-/// Lane k is the pixel (k % 4, k / 4) of the block.
+/// Renders a block. Lane k is the pixel (k % 4, k / 4) of the block.
 static inline void render_block(const packet_scene *s, int x, int y, packet_band *band)
 {
     vf rgb[3] = { all(0), all(0), all(0) };

@@ -17,7 +17,7 @@ static void print3(const char *format, const float v[3]) { printf(format, (doubl
 
 // ---- POV-Ray ----
 
-/// aperture: four times the radius of the lens, see tests/povray/pov.lua.
+/// POV-Ray's aperture is four times the radius of the lens: see tests/povray/pov.lua.
 static void povray_lens(const bench_scene *s, const bench_options *o, const double forward[3])
 {
     const double focus = (double)s->lens_focus;
@@ -58,8 +58,9 @@ static void povray_light(const bench_scene *s, const bench_options *o, const dou
     puts(o->shadows ? " }" : " shadowless }");
 }
 
-/// The first material. Gives the same pattern as glint's program of this name, except for the noise function: glint's
-/// `p` is higher than POV-Ray's by the floor's radius, an integer. f_noise3d is 0 .. 1.
+/// Writes the texture of the first material. It shows the same pattern as glint's program of this name, except for
+/// the noise function: glint's `p` is higher than POV-Ray's by the floor's radius, an integer. The range of f_noise3d
+/// is 0 .. 1.
 static void povray_pigment(const bench_material *p, const char *pattern)
 {
     const char *map = "color_map { [0 rgb 0.9] [1 rgb <0.05, 0.15, 0.25>] }";
@@ -149,7 +150,7 @@ static void write_povray(const bench_scene *s, const bench_options *o)
     bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
     puts("#version 3.7;\nglobal_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level 6 }"); // glint's max_depth 5
     if (strstr(o->pattern, "-function"))
-        puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as in functions.inc
+        puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // declared as in functions.inc
     print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
     povray_camera(s, o);
     for (int i = 0; i < o->lamps; i++) {

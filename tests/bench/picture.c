@@ -19,7 +19,7 @@ struct picture_writer {
 
 // ---- Tone ----
 
-/// Stores sixteen pixels as 48 bytes (writes 64).
+/// Stores sixteen pixels in 48 bytes, but writes 64.
 static inline void store_codes(vi r, vi g, vi b, uint8_t *out)
 {
     const vi three_of_four =
@@ -69,7 +69,8 @@ static void put32(uint8_t *out, uint32_t value)
         out[i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
-/// Adds length, type and checksum around the `length` bytes at file + size + 8.
+/// Adds the length, the type and the checksum around the chunk's `length` bytes of data, which are at file + size +
+/// 8.
 static void close_chunk(picture_writer *w, const char *type, size_t length)
 {
     uint8_t *chunk = w->file + w->size;

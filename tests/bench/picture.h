@@ -1,4 +1,4 @@
-/// From linear light to a PNG file, as fast as zlib allows: one filter for every row, deflate level 1.
+/// Converts linear light to a PNG file as fast as zlib allows: one filter for every row, and deflate level 1.
 #ifndef GLINT_BENCH_PICTURE_H
 #define GLINT_BENCH_PICTURE_H
 
@@ -23,7 +23,7 @@ void picture_writer_destroy(picture_writer *writer);
 
 /// Returns the file's bytes, valid until the next call.
 const uint8_t *picture_encode(picture_writer *writer, const picture *codes, size_t *size);
-/// The same with libpng and its defaults.
+/// Like picture_encode, but with libpng and its default settings.
 const uint8_t *picture_encode_libpng(picture_writer *writer, const picture *codes, size_t *size);
 
 /// Ends the program when the file cannot be written.

@@ -14,12 +14,12 @@
 typedef struct plain_scene {
     bench_scene plain;
     bench_options options;
-    void *side; ///< private to the program
+    void *side; ///< data private to the including program
     float *film; ///< red, green, blue of each pixel
 } plain_scene;
 
-/// Returns the nearest sphere that a ray hits before t = *far, except the one that it leaves; NO_SPHERE: none. *far:
-/// the hit's t.
+/// Returns the nearest sphere that a ray hits before t = *far, except the sphere that the ray leaves, and sets *far
+/// to the t of that hit. Returns NO_SPHERE when there is none.
 static size_t nearest(const plain_scene *s, const double origin[3], const double dir[3], size_t leaving, double *far);
 
 static double plain_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -31,7 +31,7 @@ static void plain_unit(double v[3])
         v[c] /= length;
 }
 
-/// A random number in 0 .. 1, by xorshift.
+/// Returns a random number in 0 .. 1, by xorshift.
 static double plain_random(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -50,7 +50,7 @@ static void plain_scatter(const double n[3], uint64_t *state, double out[3])
         out[c] = x * a[c] + y * b[c] + h * n[c];
 }
 
-/// A point on a sphere, and its light from the lamp.
+/// A point on a sphere, and the light that it receives from the lamp.
 typedef struct plain_point {
     double at[3], normal[3], lit;
     size_t sphere;
@@ -120,7 +120,7 @@ static double plain_frame(void *scene)
     return bench_now_ms() - start;
 }
 
-/// Prints the frame's time, and the mean of its light, which equals glint's within noise.
+/// Prints the frame's time, and the mean light of its pixels, which equals glint's within the noise.
 static void plain_measure(plain_scene *s)
 {
     double sum = 0;

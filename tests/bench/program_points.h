@@ -14,8 +14,8 @@ typedef struct program_points {
     _Alignas(64) float plane[6][PROGRAM_POINTS];
 } program_points;
 
-/// Positions in -10 .. 10; other inputs in 0 .. 1, so that about half of the highlights are nonzero; shininess below
-/// 64.
+/// Fills the inputs: positions in -10 .. 10; shininess below 64; other inputs in 0 .. 1, so that about half of the
+/// highlights are nonzero.
 static inline void program_points_fill(program_points *points)
 {
     uint64_t state = 1;

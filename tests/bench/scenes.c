@@ -117,7 +117,8 @@ static void make_palette(bench_scene *s, uint64_t *state)
     }
 }
 
-/// The radii scale with the mean spacing, so that a cloud of any count covers about as much.
+/// Adds a cloud of spheres. The radii scale with the mean spacing, so that clouds of any count cover about the same
+/// share of the picture.
 static void make_cloud(bench_scene *s, size_t count)
 {
     static const float size[3] = { 32, 18, 18 };
@@ -137,14 +138,14 @@ static void make_cloud(bench_scene *s, size_t count)
     set3(s->light, 25, 30, 30);
 }
 
-/// A whole box of particles in an orthographic view, as materials scientists look at them.
+/// Makes a whole box of particles in an orthographic view, as materials scientists look at them.
 static void make_box(bench_scene *s, size_t count)
 {
     make_cloud(s, count);
     s->height = 18;
 }
 
-/// The same, seen and lit from inside.
+/// Makes the same box, seen and lit from inside.
 static void make_inside(bench_scene *s, size_t count)
 {
     make_cloud(s, count);
@@ -154,7 +155,7 @@ static void make_inside(bench_scene *s, size_t count)
     set3(s->light, 2, 1, 0.5F);
 }
 
-/// A chain of balls connected by rods; every fourth ball has a tip.
+/// Makes a chain of balls connected by rods; every fourth ball has a tip.
 static void make_molecule(bench_scene *s, size_t count)
 {
     uint64_t state = count;
@@ -191,7 +192,8 @@ static void make_molecule(bench_scene *s, size_t count)
 
 // ---- Spheres on a floor, which shadow it and each other ----
 
-/// The floor is a 40 x 40 part of a large ball's top. The radii scale with the spacing, as in a cloud.
+/// Puts spheres on a floor, a 40 x 40 part of the top of a large ball. The radii scale with the spacing, as in a
+/// cloud.
 static void make_floor(bench_scene *s, size_t count)
 {
     static const float ground[4] = { 0, -1000, 0, 1000 }, side = 40;
@@ -213,14 +215,14 @@ static void make_floor(bench_scene *s, size_t count)
     set3(s->light, 9, 20, 6);
 }
 
-/// Makes the floor, and everything with its material, a mirror.
+/// Turns the floor's material into a mirror. Other objects with that material become mirrors too.
 static void make_mirror_floor(bench_scene *s, size_t count)
 {
     make_floor(s, count);
     s->materials[0] = (bench_material) { .diffuse = { 0.1F, 0.1F, 0.12F }, .mirror = 0.8F };
 }
 
-/// Every second sphere is of glass.
+/// Makes every second sphere glass.
 static void make_glass_floor(bench_scene *s, size_t count)
 {
     make_floor(s, count);
@@ -228,7 +230,7 @@ static void make_glass_floor(bench_scene *s, size_t count)
         s->materials[i] = (bench_material) { .transmission = 0.9F };
 }
 
-/// Solids of one kind on the floor instead of spheres.
+/// Puts solids of one kind on the floor instead of spheres.
 static void make_solids(bench_scene *s, size_t count, bench_solid_kind kind)
 {
     uint64_t state = 7 * count;

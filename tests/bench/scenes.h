@@ -8,12 +8,13 @@
 
 #define BENCH_WIDTH 1920
 #define BENCH_HEIGHT 1080
-#define BENCH_FRAMES 60 ///< of a job
-#define BENCH_MATERIALS 16 ///< at most: sixteen floats fit in one vector register
+#define BENCH_FRAMES 60 ///< frames of a job
+#define BENCH_MATERIALS 16 ///< largest number of materials: sixteen floats fit in one vector register
 
 typedef struct bench_material {
     float diffuse[3], specular, shininess;
-    float mirror, transmission; ///< above 0: glass of index 1.5, which has no matt term in POV-Ray
+    float mirror, transmission; ///< shares of reflected and transmitted light; transmission above 0: glass of index
+        ///< 1.5, which has no matt term in POV-Ray
 } bench_material;
 
 typedef enum bench_solid_kind {
@@ -24,7 +25,7 @@ typedef enum bench_solid_kind {
     BENCH_TIP ///< a cone
 } bench_solid_kind;
 
-/// Only for glint and POV-Ray.
+/// A solid shape, only for glint and POV-Ray.
 typedef struct bench_solid {
     bench_solid_kind kind;
     uint32_t material;
@@ -35,19 +36,20 @@ typedef struct bench_solid {
 
 typedef struct bench_scene {
     size_t sphere_count;
-    float *spheres; ///< x, y, z, radius of each; binary32, so that all sides have identical numbers
+    float *spheres; ///< x, y, z, radius of each sphere; binary32, so that all sides have identical numbers
     uint32_t *sphere_material;
     size_t solid_count;
     bench_solid *solids;
-    size_t vertex_count, triangle_count; ///< a mesh with the first material
-    float *vertices; ///< x, y, z of each
-    uint32_t *triangles; ///< three vertices of each
+    size_t vertex_count, triangle_count; ///< numbers of vertices and triangles of a mesh with the first material
+    float *vertices; ///< x, y, z of each vertex
+    uint32_t *triangles; ///< indices of the three vertices of each triangle
     int material_count;
     bench_material materials[BENCH_MATERIALS];
     float eye[3], at[3], fov_y_degrees;
-    float lens_radius, lens_focus; ///< of a lens, if the options ask for one; only glint and POV-Ray
-    float height; ///< above 0: of an orthographic view, world units; only glint and POV-Ray
-    float light[3], light_radius; ///< a white light; the radius is for the area light
+    float lens_radius, lens_focus; ///< radius and focus distance of the lens, if the options ask for a lens; only
+        ///< glint and POV-Ray
+    float height; ///< height of an orthographic view, in world units; 0: a perspective view; only glint and POV-Ray
+    float light[3], light_radius; ///< a white light; light_radius is only for the area light
     float ambient[3], background[3];
 } bench_scene;
 
@@ -69,10 +71,12 @@ typedef struct bench_scene {
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);
 
-/// The position of lamp `i` of `count`: a single lamp at the scene's position, several on a ring around it.
+/// Stores the position of lamp `i` of `count`. A single lamp is at the scene's position; several lamps are on a ring
+/// around it.
 void bench_lamp(const bench_scene *scene, int i, int count, double position[3]);
 
-/// The jobs of 60 frames, counted from 0: a lamp that circles once, and a highlight that shrinks.
+/// The jobs of 60 frames, counted from 0: the position of a lamp that circles once, and the shininess of a highlight
+/// that shrinks.
 void bench_job_light(int frame, double position[3]);
 double bench_job_shininess(int frame);
 

@@ -1,4 +1,5 @@
-/// Sixteen floats at a time, for the comparators: AVX-512, with all that -ffast-math allows.
+/// Vectors of sixteen floats for the programs that glint is compared with: AVX-512, with everything that -ffast-math
+/// allows.
 ///
 /// The logarithm, the power and the sRGB curve are polynomials of the mantissa with an error of 3e-6, far below an
 /// 8-bit step.
@@ -18,7 +19,7 @@ typedef struct vec {
 static inline vf all(float x) { return _mm512_set1_ps(x); }
 static inline vf pick(vm mask, vf yes, vf no) { return _mm512_mask_blend_ps(mask, no, yes); }
 static inline vm less(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
-/// Entry `index` (0 .. 15, by lane) of a table held in one register.
+/// Returns entry `index` (0 .. 15, one index per lane) of a table that is held in one register.
 static inline vf look_up(vf table, vi index) { return _mm512_permutexvar_ps(index, table); }
 
 static inline vf dot(vec a, vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -27,7 +28,7 @@ static inline vec minus(vec a, vec b) { return (vec) { a.x - b.x, a.y - b.y, a.z
 static inline vec scaled(vec a, vf s) { return (vec) { a.x * s, a.y * s, a.z * s }; }
 static inline vec all3(const float v[3]) { return (vec) { all(v[0]), all(v[1]), all(v[2]) }; }
 
-/// The 14-bit estimate, and one Newton step.
+/// Returns 1 / sqrt(x): the processor's 14-bit estimate, refined by one Newton step.
 static inline vf inverse_sqrt(vf x)
 {
     vf r = _mm512_rsqrt14_ps(x);
@@ -59,12 +60,12 @@ static inline vf exp2_of(vf x)
     return _mm512_scalef_ps(p, whole);
 }
 
-/// 8-bit sRGB values of linear light: 1.055 x^(1/2.4) - 0.055, or 12.92 x for dark values.
+/// Converts linear light to 8-bit sRGB values: 1.055 x^(1/2.4) - 0.055, or 12.92 x for dark values.
 static inline vi srgb_of(vf x)
 {
     x = _mm512_max_ps(_mm512_min_ps(x, all(1)), all(0));
     vf m = _mm512_getmant_ps(x, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_zero);
-    vi exponent = _mm512_srli_epi32(_mm512_castps_si512(x), 23); // its low four bits select the table entry
+    vi exponent = _mm512_srli_epi32(_mm512_castps_si512(x), 23); // the low four bits select the table entry
     // 255 1.055 2^(5/12 (k - 15)): entry 15 is the octave from 1; the lowest entries are in the linear part.
     const vf octave =
         _mm512_setr_ps(3.534721F, 4.718287F, 6.298157F, 8.407031F, 11.22204F, 14.97963F, 19.9954F, 26.69066F, 35.62776F,

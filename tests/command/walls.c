@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 #define INHERITED 57 // a descriptor that the parent left open
-#define DATA 41 // one that stays open
+#define DATA 41 // a descriptor that stays open in the sandbox
 
 static pid_t parent;
 
@@ -57,7 +57,7 @@ static int uses_inherited(void) { return errno_of(write(INHERITED, "x", 1)); }
 static int reads_input(void)
 {
     char byte;
-    return read(STDIN_FILENO, &byte, 1) == 1 ? 0 : EBADF; // must be at its end immediately
+    return read(STDIN_FILENO, &byte, 1) == 1 ? 0 : EBADF; // the input must be at its end immediately
 }
 
 static int starts_program(void)
@@ -87,7 +87,7 @@ static int makes_memory_file(void) { return errno_of(syscall(SYS_memfd_create, "
 
 static int takes_memory(void)
 {
-#ifdef __SANITIZE_ADDRESS__ // which maps terabytes, so that there is no limit
+#ifdef __SANITIZE_ADDRESS__ // AddressSanitizer maps terabytes, so there is no memory limit
     return ENOMEM;
 #endif
     return mmap(NULL, (size_t)5 << 30, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED ? errno : 0;
@@ -129,7 +129,7 @@ static int writes_scattered(void)
     return file < 0 ? 0 : errno_of(writev(file, &piece, 1));
 }
 
-// Rendering must still work.
+// Checks that rendering still works in the sandbox.
 static int works(void)
 {
     struct iovec nothing = { (void *)"", 0 };
@@ -164,8 +164,8 @@ static bool write_file(const char *path)
     return file && fputs("text", file) >= 0 && fclose(file) == 0;
 }
 
-/// Runs an attack in a child process. Returns 0 when it succeeds, otherwise its errno; 255 when the sandbox could not
-/// be built.
+/// Runs an attack in a child process, inside the sandbox if `walls`. Returns 0 when the attack succeeds, otherwise
+/// its errno; 255 when the sandbox could not be built.
 static int result_of(int (*run)(void), bool walls)
 {
     char message[GLINTL_MESSAGE_SIZE] = "", folder[] = "pictures", script[] = "scene.lua";

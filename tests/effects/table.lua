@@ -5,7 +5,7 @@
 --- Instructions and calls are counted by valgrind, within tiles, for AVX2, which it supports, or generic kernels.
 local here = arg[0]:gsub("[^/]*$", "")
 local rows = dofile(here .. "rows.lua")
-local LIMIT = 0.01 -- of the instructions
+local LIMIT = 0.01 -- largest allowed cost of an unused effect, as a share of the instructions
 local mode, build = arg[1], arg[2]
 
 local function output(command)

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/// `color`: PNG_COLOR_TYPE_*. Samples of 16 bits are in native order, row by row from the top. gamma 0: no gAMA chunk.
-/// Aborts on failure.
+/// Writes a PNG. `color` is PNG_COLOR_TYPE_*. Samples are in rows from the top, 16-bit samples in native byte order.
+/// With gamma 0, the file has no gAMA chunk. Aborts on failure.
 static inline void write_png(const char *path, int width, int height, int color, int bits, double gamma,
                              const void *samples)
 {

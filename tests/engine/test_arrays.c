@@ -27,7 +27,7 @@ static glint_image *make_planes(uint32_t passes)
     return image;
 }
 
-/// The value as stored in a file: colours are made finite, distances stay unchanged.
+/// Returns the value that a file stores: colours are made finite, distances stay unchanged.
 static float expected(glint_pass pass, float value)
 {
     if (glint_pass_channels(pass) == 1)
@@ -189,7 +189,7 @@ static void test_exr(void **state)
     glint_image_release(image);
 }
 
-/// The bytes depend only on the image.
+/// Checks that the bytes of a file depend only on the image.
 static void test_exr_again(void **state)
 {
     (void)state;
@@ -265,7 +265,7 @@ static void test_black(void **state)
     assert_true(glint_image_is_black(image));
     glint_image_release(image);
     image = make_planes(1u << GLINT_PASS_DEPTH);
-    assert_false(glint_image_is_black(image)); // without a beauty pass, its light is unknown
+    assert_false(glint_image_is_black(image)); // without a beauty pass, the image's light is unknown
     glint_image_release(image);
 }
 

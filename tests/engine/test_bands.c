@@ -125,7 +125,7 @@ static void test_bands_repeat(void **state)
     glint_bands_destroy(NULL);
 }
 
-/// A picture with the same size and stamps but another tone or encoding reuses nothing.
+/// A picture that differs only in tone or encoding, with the same size and stamps, reuses nothing.
 static void test_bands_tone(void **state)
 {
     (void)state;
@@ -144,11 +144,11 @@ static void test_bands_tone(void **state)
     ((uint8_t *)image->codes)[0] ^= 1;
     assert_true(check_same(image, GLINT_ENCODE_SMALL, bands) == 0);
     assert_true(check_same(image, GLINT_ENCODE_FAST, bands) == 0);
-    ((uint8_t *)image->codes)[image->width * 3 * 99] ^= 1; // in the last of five rows of tiles
+    ((uint8_t *)image->codes)[image->width * 3 * 99] ^= 1; // a pixel in the last of five rows of tiles
     image->row_stamp[4] = next_stamp();
     double reused = check_same(image, GLINT_ENCODE_FAST, bands);
     assert_true(fabs(reused - 0.8) < 1e-9);
-    image->row_stamp[0] = 0; // 0: unknown, never reused
+    image->row_stamp[0] = 0; // stamp 0 means that the row is unknown, so it is never reused
     reused = check_same(image, GLINT_ENCODE_FAST, bands);
     assert_true(fabs(reused - 0.8) < 1e-9);
     reused = check_same(image, GLINT_ENCODE_FAST, bands);
@@ -212,7 +212,7 @@ static void test_bands_other_pass(void **state)
     glint_bands_destroy(bands);
 }
 
-/// The bytes do not depend on where the encoder's memory is. Blocks that the test holds move it each time.
+/// The bytes do not depend on the address of the encoder's memory, which changes because the test holds blocks.
 static void test_bands_places(void **state)
 {
     (void)state;
@@ -224,7 +224,7 @@ static void test_bands_places(void **state)
     for (int size = 8; size <= 40; size += 32) {
         glint_image *image = NULL;
         glint_bytes first = { 0 };
-        assert_int_equal(glint_image_create(size, size, 0, &tone, &image, NULL), GLINT_OK); // black
+        assert_int_equal(glint_image_create(size, size, 0, &tone, &image, NULL), GLINT_OK); // the picture is black
         for (int i = 0; i < TIMES; i += (int)case_step()) {
             free(held[i % HELD]);
             held[i % HELD] = malloc((size_t)(1 + below(64)) << 16);

@@ -16,7 +16,7 @@
 
 // ---- Allocations that fail ----
 
-static long allocations_left = -1; ///< -1: no limit
+static long allocations_left = -1; ///< allocations before the next one fails; -1: no limit
 
 static bool runs_out(void)
 {
@@ -62,7 +62,7 @@ static double uniform(double low, double high)
 
 typedef void place_box(uint32_t i, uint32_t count, double center[3], double *radius);
 
-/// The radius of spheres in the unit cube whose mean distance is about three times their radius.
+/// Returns the radius of spheres in the unit cube whose mean distance is about three times their radius.
 static double mean_radius(uint32_t count) { return 0.3 / cbrt(count); }
 
 static void scattered(uint32_t i, uint32_t count, double center[3], double *radius)
@@ -184,7 +184,7 @@ typedef struct walk {
     const glint_bvh *bvh;
     const glint_box *boxes;
     uint32_t count;
-    uint8_t *seen; ///< how often each box was found
+    uint8_t *seen; ///< how often each box occurred
     uint32_t nodes, slots;
     int depth; ///< longest path so far, in nodes
     double visits; ///< sum of the nodes' surface areas
@@ -255,8 +255,8 @@ static glint_box walk_node(walk *w, uint32_t index, int depth)
     return box;
 }
 
-/// Checks that each box occurs once, that each stored box is the exact bounds of its subtree, that each node is
-/// reached once and that no path is too long.
+/// Checks that each box occurs once, that each stored box is the exact bounds of its subtree, that the walk reaches
+/// each node once, and that no path is too long.
 static walk check_tree(const glint_bvh *bvh, const glint_box *boxes, uint32_t count)
 {
     walk w = { .bvh = bvh, .boxes = boxes, .count = count, .seen = calloc(count, 1) };
@@ -271,7 +271,7 @@ static walk check_tree(const glint_bvh *bvh, const glint_box *boxes, uint32_t co
     return w;
 }
 
-/// Boxes with their indices. The build sorts and frees them.
+/// Returns the boxes with their indices. The build sorts and frees them.
 static glint_box *numbered(const glint_box *boxes, uint32_t count)
 {
     glint_box *copy = glint_boxes_alloc(count);
@@ -378,8 +378,8 @@ static void test_threads(void **unused)
     }
 }
 
-/// Expected number of nodes that a random ray through the root visits, in a tree whose nodes are cubes with 16^k
-/// boxes each.
+/// Returns the expected number of nodes that a random ray through the root visits, in a tree whose nodes are cubes
+/// with 16^k boxes each.
 static double visits_of_cubes(uint32_t count)
 {
     double visits = 1;

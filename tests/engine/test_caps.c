@@ -59,8 +59,8 @@ static float diffuse_at(const glint_image *image, int x, int y)
 
 // ---- The covered share, by integration ----
 
-/// Share of a light that a ball covers, seen from the origin. Integrates over the light's disk in the sky, ring by
-/// ring.
+/// Returns the share of a light that a ball covers, as seen from the origin. Integrates over the light's disk in the
+/// sky, ring by ring.
 static long double covered(const double light[3], double light_radius, const double ball[3], double radius)
 {
     enum { RINGS = 20000 };
@@ -86,7 +86,7 @@ static long double covered(const double light[3], double light_radius, const dou
     return sum * s / RINGS / (2 * sinl(s / 2) * sinl(s / 2));
 }
 
-/// Share of a light that is visible from the origin of the floor. The eye is next to the origin.
+/// Renders the share of a light that is visible from the floor's origin. The eye is next to the origin.
 static double share_seen(const double light[3], double light_radius, const double ball[3], double radius)
 {
     double got[2];
@@ -116,8 +116,8 @@ static void near_share(const double light[3], double light_radius, const double 
                  ball[0], ball[1], ball[2], radius, got, want);
 }
 
-/// Lights of any size, down to 1e-9 of their distance. Balls that look as large, smaller or larger, or are next to
-/// the point.
+/// Lights of any size, down to 1e-9 of their distance. The balls look as large as the light, smaller or larger, or
+/// are next to the point.
 static void parts_of_a_light(void **unused)
 {
     int partial = 0;
@@ -136,7 +136,7 @@ static void parts_of_a_light(void **unused)
             ball[c] = e * (cos(g) * light[c] / d + sin(g) * right[c]);
         const double radius = e * sin(a < 1.4 ? a : 1.4), light_radius = d * sin(s);
         if (e + radius > d - light_radius)
-            continue; // not entirely in front of the light
+            continue; // the ball is not entirely in front of the light
         const double want = 1 - (double)covered(light, light_radius, ball, radius);
         partial += want > 0.01 && want < 0.99;
         near_share(light, light_radius, ball, radius, want);
@@ -220,7 +220,7 @@ static void every_way_gives_one_picture(void **unused)
         }
 }
 
-/// On the floor, where the light is high above the horizon, compares with 4096 samples.
+/// Compares the picture with 4096 samples, on the floor, where the light is high above the horizon.
 static void truth_by_samples(void **unused)
 {
     (void)unused;
@@ -276,7 +276,7 @@ static void only_where_called_for(void **unused)
     }
 }
 
-/// A box or glass forces shadow rays, and the picture is identical to one with rays.
+/// A box or glass makes the engine trace shadow rays, and the picture is identical to one computed with rays.
 static void other_shapes_have_rays(void **unused)
 {
     (void)unused;
@@ -307,15 +307,15 @@ static void other_shapes_have_rays(void **unused)
     }
 }
 
-/// Hard shadows: dark where the centre of the light is hidden, otherwise as without shadows. One ray replaces sixteen
-/// samples.
+/// Hard shadows: a point is dark where the centre of the light is hidden, and otherwise lit as without shadows. One
+/// ray replaces sixteen samples.
 static void hard_is_of_the_middle(void **unused)
 {
     static const char *const sets[] = { "ref", "generic", "avx2", "avx512" };
     static const double corners[3][3] = { { 0, 6, 0 }, { 3, 6, 0 }, { 0, 6, 3 } };
     (void)unused;
     for (int kind = GLINT_LIGHT_DISK; kind <= GLINT_LIGHT_SPHERE; kind++) {
-        glint_image *image[3]; // without shadows, hard shadows, a point light at the centre
+        glint_image *image[3]; // pictures without shadows, with hard shadows, and with a point light at the centre
         glint_frame_stats stats;
         for (int way = 0; way < 3; way++) {
             glint_scene *scene = make_floor((double[3]) { 0, 8, 9 }, (double[3]) { 0, 0, 0 });

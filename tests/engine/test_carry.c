@@ -172,7 +172,7 @@ static void move_one(world *w)
     if (one_in(4))
         memcpy(to, w->home[i], sizeof to);
     if (one_in(20))
-        memcpy(to, w->at[below(SHAPES)], sizeof to); // into another shape, or onto an identical one
+        memcpy(to, w->at[below(SHAPES)], sizeof to); // turns it into another shape, or puts it on an identical one
     place(w, i, to);
 }
 
@@ -243,7 +243,7 @@ static void render_both(const world *w, const glint_render_desc *desc, glint_ren
 static void some_things_move(void **unused)
 {
     (void)unused;
-    const char *other = getenv("GLINT_SEED"); // set by `make soak`
+    const char *other = getenv("GLINT_SEED"); // a seed, set by `make soak`
     const uint64_t first = other ? 1000 * strtoull(other, NULL, 10) : 0;
     double casts = 0, shadows = 0;
     int frames = 0;
@@ -284,7 +284,7 @@ static void some_things_move(void **unused)
 
 // ---- Between a light and the points of a tile ----
 
-/// Chooses a point that the tile shows. Returns whether it is inside the box.
+/// Chooses a random point that the tile shows. Returns whether the point is inside the box.
 static bool random_seen(const glint_plan *plan, uint32_t column, uint32_t row, const glint_point_box *box, double out[3])
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -299,7 +299,8 @@ static bool random_seen(const glint_plan *plan, uint32_t column, uint32_t row, c
     return inside;
 }
 
-/// Squared distance of the segment between the point and the light from the ball's centre, in squared radii.
+/// Returns the squared distance from the ball's centre to the segment between the point and the light, in squared
+/// radii.
 static double way_past(const glint_ball *ball, const double from[3], const glint_plan_light *light)
 {
     double way[3], line[3], along = 0, length2 = 0, across2 = 0;
@@ -315,8 +316,8 @@ static double way_past(const glint_ball *ball, const double from[3], const glint
     return across2 / (ball->radius * ball->radius);
 }
 
-/// A ball that glint_may_shade rules out never shades a visible point, and nearly all balls that shade nothing are
-/// ruled out.
+/// When glint_may_shade rules out a ball, the ball shadows no visible point. glint_may_shade rules out nearly all
+/// balls that shadow no point.
 static void balls_between(void **unused)
 {
     (void)unused;

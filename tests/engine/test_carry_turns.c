@@ -161,7 +161,8 @@ static void add_ground(stand *s)
     add(s->scene, ground);
 }
 
-/// While light is cached, a pass needs only the points of the first sample: they do not give the bounds of the tile.
+/// While the light is cached, a pass computes only the points of the first sample. The bounds of these points are not
+/// the bounds of the tile.
 static void a_box_begun(void **unused)
 {
     (void)unused;
@@ -216,14 +217,14 @@ static void another_order(void **unused)
     check(&s, scene[0]);
     check(&s, scene[1]);
     paint(s.paint[0], 0.7);
-    check(&s, scene[1]); // reuses its hits
+    check(&s, scene[1]); // this frame reuses the hits of the other scene
     move(ball, 8, 2.5, 0);
     check(&s, scene[1]);
     glint_scene_release(scene[1]);
     free_stand(&s);
 }
 
-/// A nearby mesh underflows when the scene's extent becomes huge.
+/// The extent of the scene becomes so huge that a nearby mesh underflows.
 static void far_beyond(void **unused)
 {
     (void)unused;
@@ -252,7 +253,7 @@ static void set_lights(stand *s, glint_light *const lamps[LAMPS], bool many)
         assert_int_equal((many ? glint_scene_add_light : glint_scene_remove_light)(s->scene, lamps[i], NULL), GLINT_OK);
 }
 
-/// When memory does not suffice for the tiles' slots, tiles written into a recycled picture get no stamp.
+/// When there is no memory for the tiles' slots, tiles that are written into a recycled picture get no stamp.
 static void no_room_for_a_while(void **unused)
 {
     (void)unused;
@@ -271,19 +272,19 @@ static void no_room_for_a_while(void **unused)
         set_lights(&s, lamps, true);
         check(&s, s.scene);
         paint(s.paint[0], 0.6);
-        check(&s, s.scene); // drawn into the first picture again
+        check(&s, s.scene); // the frame overwrites the first picture
         set_lights(&s, lamps, false);
         paint(s.paint[0], 0.3);
         check(&s, s.scene);
         paint(s.paint[1], 0.6);
-        check(&s, s.scene); // tiles without the ball match the first picture
+        check(&s, s.scene); // tiles without the ball equal those of the first picture
         for (int i = 0; i < LAMPS; i++)
             glint_light_release(lamps[i]);
         free_stand(&s);
     }
 }
 
-/// Two triangles in one object, then the same triangles in two objects.
+/// First two triangles belong to one object, then the same triangles belong to two objects.
 static void other_objects(void **unused)
 {
     (void)unused;
@@ -315,8 +316,8 @@ static void other_objects(void **unused)
     free_stand(&s);
 }
 
-/// The visible share of a light behind several balls, multiplied in BVH order, is close to a rounding boundary of
-/// float: these positions were searched for among thirty balls. Another ball, far away, changes the order.
+/// The visible share of a light behind several balls is a product in BVH order, close to a rounding boundary of
+/// float. A search among thirty balls found these positions. Another ball, far away, changes the order.
 static void shares_in_another_order(void **unused)
 {
     (void)unused;
@@ -364,8 +365,8 @@ static void look_from_above(stand *s)
     assert_int_equal(glint_camera_set(s->camera, &desc, NULL), GLINT_OK);
 }
 
-/// When one of very many objects moves, the hits of the others are reused, with any camera. When all move and then
-/// only one, reuse starts again.
+/// When one of very many objects moves, the hits of the others are reused, with any camera. When all objects move and
+/// then only one, reuse starts again.
 static void one_of_a_crowd(void **unused)
 {
     (void)unused;

@@ -64,16 +64,16 @@ enum { MOST_NODES = 128 };
 typedef struct node {
     glint_shape_kind kind;
     int children[4], count;
-    quad inverse[3][4]; ///< of a leaf: from world space to the unit shape
-    double normal[3], point[3]; ///< of a plane, in world space
+    quad inverse[3][4]; ///< map of a leaf from world space to the unit shape
+    double normal[3], point[3]; ///< normal and point of a plane, in world space
     int mesh; ///< index into meshes
 } node;
 
 static node nodes[MOST_NODES];
 static int node_count, part_count;
-static bool with_tori; ///< whether leaves may be tori, which in_part does not support
+static bool with_tori; ///< whether leaves may be tori, which the test in_part does not support
 static bool with_meshes; ///< whether leaves may be meshes
-static closed_mesh meshes[MOST_NODES]; ///< in world space
+static closed_mesh meshes[MOST_NODES]; ///< the meshes of all leaves, in world space
 static int mesh_count;
 
 static void invert(quad m[3][4], quad out[3][4])
@@ -145,7 +145,7 @@ static int random_mesh(glint_shape *whole, const glint_transform *around)
     return node_count++;
 }
 
-/// Adds a random leaf. Planes occur only under the identity map.
+/// Adds a random leaf; a plane only if `plane`, because planes occur only under the identity map.
 static int random_part(glint_shape *whole, const glint_transform *around, bool plane)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
@@ -183,7 +183,7 @@ static int random_part(glint_shape *whole, const glint_transform *around, bool p
     return node_count++;
 }
 
-/// kind: the set operation.
+/// Makes a set operation of kind `kind` on random parts.
 static int random_set(glint_shape **out, const glint_transform *around, glint_shape_kind kind, int depth)
 {
     const int at = node_count++;
@@ -225,7 +225,7 @@ static glint_shape *random_whole(int depth)
 static bool in_part(const node *n, const quad p[3])
 {
     if (n->kind == GLINT_SHAPE_MESH) {
-        const int times = times_inside(&meshes[n->mesh], p); // negative under a mirroring map
+        const int times = times_inside(&meshes[n->mesh], p); // the count is negative under a mirroring map
         return times != 0;
     }
     quad k[3], height = 0;
@@ -268,7 +268,7 @@ static bool in_set(int at, const quad p[3])
 // ---- All points where a ray can enter or leave ----
 
 static quad roots[(12 + CLOSED_TRIANGLES) * MOST_NODES];
-static bool near_edge; ///< whether a ray passes close to an edge
+static bool near_edge; ///< whether the current ray passes close to an edge
 static int root_count;
 
 static void add_root(quad t)
@@ -351,8 +351,8 @@ static void at_way(const double o[3], const double d[3], quad t, quad p[3])
         p[c] = o[c] + t * d[c];
 }
 
-/// Returns where the ray first enters or leaves the shape; 0: nowhere. *sure: no other root is so close that rounding
-/// could swap them.
+/// Returns the distance at which the ray first enters or leaves the shape; 0 if it never does. *sure becomes false if
+/// another root is so close that rounding could swap the two.
 static quad first_change(const double o[3], const double d[3], bool *sure)
 {
     quad p[3], close = 1;
@@ -436,7 +436,7 @@ static void wholes_against_sets(void **unused)
     against_sets(3000);
 }
 
-/// Leaves may be meshes. A point is inside a mesh by counting crossings in 113-bit arithmetic.
+/// Leaves may be meshes. Counting crossings in 113-bit arithmetic decides whether a point is inside a mesh.
 static void meshes_against_sets(void **unused)
 {
     (void)unused;
@@ -497,7 +497,7 @@ static void add_light(glint_scene *scene)
     glint_light_release(lamp);
 }
 
-/// floor: adds a floor. many: adds so many objects that tiles traverse the BVH.
+/// Makes a lit scene, with a floor if `floor`, and if `many` with so many objects that tiles traverse the BVH.
 static glint_scene *lit_scene(bool floor, bool many)
 {
     glint_scene *scene;
@@ -614,7 +614,7 @@ static void meshes_on_every_instruction_set(void **unused)
     same_on_every_set(60);
 }
 
-/// A box, ball or cylinder around a grid point. On the grid, faces coincide, and eyes are between them.
+/// A box, ball or cylinder around a grid point. On the grid, faces coincide. Eyes are between the grid points.
 static glint_shape *grid_part(const double place[3], glint_shape_kind kind)
 {
     glint_shape_desc d = glint_shape_desc_default(kind);
@@ -630,8 +630,8 @@ static glint_shape *grid_part(const double place[3], glint_shape_kind kind)
     return made(&d);
 }
 
-/// Many small CSG shapes among boxes, so that tiles find them through the BVH. Data computed once for the eye must
-/// hold for all rays.
+/// Many small CSG shapes among boxes, so that tiles find them through the BVH. Data computed once for the eye must be
+/// right for all rays.
 static void many_small_wholes(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_BOX, GLINT_SHAPE_SPHERE,
@@ -739,8 +739,8 @@ static void wholes_of_one_solid(void **unused)
     }
 }
 
-/// Counts pixels that differ by more than rounding of positions and light explains: 2^-18 of the values. *hits: hits
-/// in `a`.
+/// Counts the pixels that differ by more than 2^-18 of their values, which rounding of positions and light can
+/// explain. *hits gets the number of hits in `a`.
 static int unlike(const glint_image *a, const glint_image *b, int *hits)
 {
     static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL };
@@ -761,7 +761,7 @@ static int unlike(const glint_image *a, const glint_image *b, int *hits)
     return count;
 }
 
-/// A mesh box minus a ball, cut by a block that ends in one of its faces, against the same with a plain box, in
+/// A mesh box minus a ball, cut by a block that ends in one of its faces, against the same shape with a plain box, in
 /// glass, mirrors and shadows.
 static void boxes_of_triangles(void **unused)
 {
@@ -902,12 +902,12 @@ static void halves_are_whole(void **unused)
             double o[3], d[3], at[3];
             glint_hit got[2];
             bool hit[2];
-            random_vector(at, n % 2 ? 1 : 5); // also from inside
+            random_vector(at, n % 2 ? 1 : 5); // the ray may also start inside
             for (int c = 0; c < 3; c++)
                 at[c] = one_in(4) ? (double)(int)at[c] : at[c];
             map_point(&glint_shape_get(whole[0])->transform, at, 1, o);
             random_vector(at, 1);
-            at[0] = one_in(3) ? 0 : at[0]; // in the plane between the halves
+            at[0] = one_in(3) ? 0 : at[0]; // a point in the plane between the halves
             map_point(&glint_shape_get(whole[0])->transform, at, 1, d);
             for (int c = 0; c < 3; c++)
                 d[c] -= o[c];

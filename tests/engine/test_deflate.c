@@ -10,10 +10,10 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "engine/file/deflate.c" // included as source: the tests call its static functions
+#include "engine/file/deflate.c" // included as source, because the tests call its static functions
 
-#ifdef BUCKET_BITS // defined by deflate.c where the address matters and can be chosen
-#define OTHER_PLACES 32768 // each bucket about four times
+#ifdef BUCKET_BITS // deflate.c defines it where the address matters and can be chosen
+#define OTHER_PLACES 32768 // enough addresses to use each bucket about four times
 #define BAND_BYTES ((size_t)30000)
 
 static void put(uint8_t *at, const char *bytes) { memcpy(at, bytes, strlen(bytes)); }
@@ -41,7 +41,7 @@ static void *stream_at(uint64_t number)
     return NULL;
 }
 
-/// The bytes of a band encoded with this stream.
+/// Encodes a band with this stream. Returns the bytes.
 static glint_bytes band_at(const uint8_t *data, void *stream)
 {
     static uint8_t level[ISAL_DEF_LVL1_DEFAULT];
@@ -67,7 +67,7 @@ static void test_fast_places(void **state)
     void *stream[ADDRESSES_TRIED];
     uint32_t third;
     memcpy(&third, data + 2, sizeof third);
-    for (int i = 0; i < ADDRESSES_TRIED; i++) { // each at its own address
+    for (int i = 0; i < ADDRESSES_TRIED; i++) { // places each stream at its own address
         stream[i] = map_stream(bucket_of(third));
         assert_non_null(stream[i]);
     }
@@ -103,7 +103,7 @@ static void test_buckets(void **state)
     }
 }
 
-/// The state retained between bands does not affect the output, even with more buckets than streams.
+/// The state retained between bands does not affect the output, even when there are more buckets than streams.
 static void test_memory(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void test_memory(void **state)
         free(want.data);
     }
     assert_int_equal(kept->placed.count, STREAMS);
-    assert_null(kept->anywhere); // no stream needed an arbitrary address
+    assert_null(kept->anywhere); // checks that no stream needed an arbitrary address
     glint_deflate_memory_destroy(kept);
     free(data);
 }

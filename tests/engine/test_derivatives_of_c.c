@@ -48,7 +48,7 @@ typedef struct made {
     glint_material *shiny, *glass, *floor;
     glint_light *lamp, *soft;
     glint_shape *ball;
-    glint_program *stripes; ///< NULL: the floor has no pattern
+    glint_program *stripes; ///< the floor's pattern; NULL: none
 } made;
 
 // ---- The scene ------------------------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ static glint_error error;
             fail_msg("%s: %s", #call, error.message); \
     } while (0)
 
-/// offset + slope d.y
+/// Returns the program offset + slope d.y.
 static glint_program *gradient(double offset, double slope)
 {
     glint_builder *b;
@@ -132,8 +132,8 @@ static double share_reused(const glint_frame_stats *stats, const char *stage)
 
 // ---- Work of a frame ------------------------------------------------------------------------------------------------
 
-/// The stage runs for every ray that hits nothing, and for no other; with a mirror also for reflected rays that leave
-/// the scene. Without a program the stage does not exist.
+/// The stage runs for every ray that hits nothing, and for no other ray; with a mirror also for reflected rays that
+/// leave the scene. Without a program the stage does not exist.
 static void test_counts(void **state)
 {
     (void)state;
@@ -216,7 +216,7 @@ static void test_refused(void **state)
 
 // ---- Constant patterns ----------------------------------------------------------------------------------------------
 
-/// In range they become a plain colour. Out of range they run as programs, give 0 and are reported.
+/// A constant in range becomes a plain colour. A constant out of range runs as a program, gives 0 and is reported.
 static void test_numbers(void **state)
 {
     (void)state;
@@ -246,7 +246,7 @@ static void test_material_numbers(void **state)
     assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0 && w.stats.odd[GLINT_ODD_NEGATIVE].count > 0);
     assert_string_equal(w.stats.odd[GLINT_ODD_NEGATIVE].field, "diffuse");
     desc = plain;
-    desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, -1); // fully transparent
+    desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, -1); // the surface is fully transparent
     OK(glint_material_set(w.material, &desc, &error));
     assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0);
     glint_program_release(desc.program.opacity);
@@ -255,7 +255,7 @@ static void test_material_numbers(void **state)
     assert_true(render(&w, WIDTH / 2, HEIGHT / 2) > 0.4);
     glint_program_release(desc.program.opacity);
     desc = plain;
-    desc.program.bump = constant(GLINT_PROGRAM_PATTERN, -3); // the same height everywhere
+    desc.program.bump = constant(GLINT_PROGRAM_PATTERN, -3); // the height is the same everywhere
     OK(glint_material_set(w.material, &desc, &error));
     assert_null(glint_material_get(w.material)->program.bump);
     glint_program_release(desc.program.bump);

@@ -19,7 +19,7 @@ static void test_draft(void **state)
     assert_int_equal(access(path, F_OK), -1);
     assert_int_equal(access(glint_draft_name(draft), F_OK), 0);
     assert_int_equal(glint_draft_append(draft, "abc", 3, &error), GLINT_OK);
-    FILE *other = fopen(glint_draft_name(draft), "ab"); // another process
+    FILE *other = fopen(glint_draft_name(draft), "ab"); // stands for another process
     assert_non_null(other);
     fputs("def", other);
     fclose(other);
@@ -258,7 +258,7 @@ static void test_sheet(void **state)
     assert_int_equal(code_at(&png, x + column + 12 + 49, y + 29), 188);
     assert_int_equal(code_at(&png, x + column + 12 - 1, y), 255);
     assert_int_equal(code_at(&png, x, y + 2 * band), 0);
-    // Half of |188 - 255| and of |0 - 255|; 0 below the reference cell itself.
+    // The error is half of |188 - 255| and of |0 - 255|. It is 0 below the reference cell itself.
     assert_int_equal(code_at(&png, x + 25, y + band + 15), 0);
     assert_int_equal(code_at(&png, x + column + 12 + 25, y + band + 15), 34);
     assert_int_equal(code_at(&png, x + 25, y + 3 * band + 15), 128);
@@ -349,8 +349,8 @@ typedef struct player {
     uint8_t header[25], *canvas; ///< IHDR with its length and CRC; the displayed pixel values
     size_t pixel_bytes;
     uint32_t width, sequence, frames;
-    uint8_t control[26]; ///< of the frame being read
-    glint_bytes data; ///< its zlib stream
+    uint8_t control[26]; ///< fcTL chunk of the frame being read
+    glint_bytes data; ///< zlib stream of that frame
 } player;
 
 static void put_chunk(glint_bytes *out, const char *type, const uint8_t *body, size_t size)
@@ -370,7 +370,7 @@ static void put_chunk(glint_bytes *out, const char *type, const uint8_t *body, s
     assert_true(glint_bytes_append(out, sum, 4));
 }
 
-/// A 16-bit RGBA PNG that claims this size, with `size` bytes of zeros as pixel data. frames: 0 for no animation.
+/// A 16-bit RGBA PNG that claims this size, with `size` bytes of zeros as pixel data. `frames` 0 makes no animation.
 static glint_bytes claim(uint32_t width, uint32_t height, uint32_t frames, size_t size)
 {
     glint_bytes file = { 0 };
@@ -402,7 +402,7 @@ static void test_claims(void **state)
     assert_int_equal(glint_png_decode(file.data, file.size, &png, &error), GLINT_ERR_FORMAT);
     assert_non_null(strstr(error.message, "too little data for its size"));
     assert_int_equal(glint_png_raw_bytes(file.data, file.size), raw);
-    assert_int_equal(glint_png_raw_bytes(file.data, 33), raw); // enough to read IHDR
+    assert_int_equal(glint_png_raw_bytes(file.data, 33), raw); // these 33 bytes are enough to read IHDR
     assert_int_equal(glint_png_raw_bytes(file.data, 32), 0);
     file.data[18] ^= 1; // makes its CRC wrong
     assert_int_equal(glint_png_raw_bytes(file.data, file.size), 0);
@@ -562,8 +562,8 @@ static void test_apng_refuses(void **state)
     assert_int_equal(glint_apng_add(apng, small, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_apng_add(apng, unread, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_apng_add(apng, right, &error), GLINT_OK);
-    assert_int_equal(glint_apng_add(apng, right, &error), GLINT_ERR_INVALID); // one more than declared
-    glint_apng_destroy(apng); // unfinished
+    assert_int_equal(glint_apng_add(apng, right, &error), GLINT_ERR_INVALID); // one frame more than declared
+    glint_apng_destroy(apng); // the file is unfinished
     glint_apng_destroy(NULL);
     assert_int_equal(files_in(folder), 4);
     glint_picture_destroy(deep);

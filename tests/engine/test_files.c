@@ -28,7 +28,7 @@ static void check_by_libpng(const char *path, const glint_image *image, const gl
         unsigned got = png.bits == 16 ? ((uint16_t *)png.codes)[i] : ((uint8_t *)png.codes)[i];
         assert_int_equal(got, want);
     }
-    if (png.bits == 8 && desc->tone.transfer == GLINT_TRANSFER_SRGB) { // the simplified API converts other files
+    if (png.bits == 8 && desc->tone.transfer == GLINT_TRANSFER_SRGB) { // the simplified API would convert other files
         png_image simple = {.version = PNG_IMAGE_VERSION};
         assert_true(png_image_begin_read_from_memory(&simple, bytes.data, bytes.size));
         simple.format = PNG_FORMAT_RGB;
@@ -252,7 +252,7 @@ static void test_file_pipe(void **state)
     struct stat info;
     assert_int_equal(stat(path, &info), 0);
     assert_true(S_ISFIFO(info.st_mode));
-    refuses(path, "pipe: a file expected, got a pipe"); // returns without waiting for a writer
+    refuses(path, "pipe: a file expected, got a pipe"); // refuses at once, without waiting for the pipe's other end
     refuses("/dev/zero", "/dev/zero: a file expected, got a device");
     refuses(folder, "Is a directory");
     free(bytes.data);
@@ -275,7 +275,7 @@ static void test_file_limit(void **state)
     assert_non_null(strstr(error.message, "kept: File too large"));
     assert_int_equal(files_in(folder), 1);
     glint_bytes bytes = read_ok(in_folder("kept"));
-    assert_int_equal(bytes.size, 3); // unchanged
+    assert_int_equal(bytes.size, 3); // the file is unchanged
     free(bytes.data);
 }
 
@@ -312,7 +312,7 @@ static void test_writer_order(void **state)
         collected++;
     }
     assert_int_equal(collected, 20);
-    assert_int_equal(files_in(folder), 19); // one name has no extension
+    assert_int_equal(files_in(folder), 19); // 19: one of the names has no extension
     glint_writer_destroy(writer);
     assert_int_equal(atomic_load(&image->references), 1);
     glint_image_release(image);

@@ -37,7 +37,7 @@ static void opponent_at(const oracle *o, int x, int y, double out[3])
     out[2] = 200 * (w[1] - w[2]);
 }
 
-static double sensitivity(int channel, double d2) // d2: squared degrees
+static double sensitivity(int channel, double d2) // d2 is in squared degrees
 {
     static const double pi = 3.14159265358979323846;
     static const double a[3][2] = { { 1, 0 }, { 1, 0 }, { 34.1, 13.5 } };
@@ -48,7 +48,7 @@ static double sensitivity(int channel, double d2) // d2: squared degrees
     return sum;
 }
 
-static void solve3(const double w[3], double rgb[3]) // Cramer's rule for the matrix above
+static void solve3(const double w[3], double rgb[3]) // Solves the equations of the matrix above by Cramer's rule.
 {
     double m[3][3], det = 0, v[3];
     for (int i = 0; i < 3; i++)
@@ -289,7 +289,7 @@ static void test_reference_known(void **state)
     assert_int_equal(glint_reference_measure(reference, test, 16, &file, NULL), GLINT_OK);
     assert_float_equal(file.rmse, glint_srgb_decode(100.4 / 255) - (double)code, 1e-5);
     assert_float_equal(file.max_code, 0.4, 0.003);
-    fill(test, 3, -1, 0); // brighter than white: a file cannot store it, and its own value counts
+    fill(test, 3, -1, 0); // brighter than white: a file cannot store it, so the float value counts
     assert_int_equal(glint_reference_measure(reference, test, 8, &file, NULL), GLINT_OK);
     assert_float_equal(file.rmse, 3 - (double)code, 1e-6);
 
@@ -308,7 +308,7 @@ static void test_reference_tones(void **state)
     for (int i = 0; i < 9; i++) {
         glint_tone_desc tone = glint_tone_desc_default();
         tone.curve = curves[i % 3];
-        tone.exposure = i / 3 * 3 - 3; // -3, 0, 3
+        tone.exposure = i / 3 * 3 - 3; // exposures -3, 0, 3
         const double gain = exp2(tone.exposure);
         const double light = glint_tone_curve_inverse(tone.curve, glint_srgb_decode(100 / 255.0)) / gain;
         const double off = glint_tone_curve_inverse(tone.curve, glint_srgb_decode(100.4 / 255)) / gain;
@@ -320,7 +320,7 @@ static void test_reference_tones(void **state)
         assert_int_equal(glint_reference_measure(reference, test, 0, &got, NULL), GLINT_OK);
         assert_float_equal(got.rmse / light, off / light - 1, 1e-5);
         assert_int_equal(glint_reference_measure(reference, test, 16, &got, NULL), GLINT_OK);
-        assert_float_equal(got.rmse / light, off / light - 1, 1e-4); // off by half a 16-bit step at most
+        assert_float_equal(got.rmse / light, off / light - 1, 1e-4); // a value is off by half a 16-bit step at most
         assert_float_equal(got.max_code, 0.4, 0.003);
         assert_int_equal(glint_reference_measure(reference, test, 8, &got, NULL), GLINT_OK);
         assert_true(got.rmse < 1e-6 * light);

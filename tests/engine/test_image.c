@@ -3,7 +3,7 @@
 
 // ---- Image --------------------------------------------------------------------------------------------------------
 
-static void test_image_sizes(void **state) // I4
+static void test_image_sizes(void **state) // test case I4
 {
     (void)state;
     static const int sides[][2] = {{65536, 65536}, {1, 0}, {0, 1}, {-1, 5}, {65536, 1}};
@@ -65,7 +65,7 @@ static void check_every_step(const glint_tone_desc *desc)
         for (int i = 0; i <= 2 * reach; i++, x = nextafterf(x, INFINITY))
             check_code(table, x);
     }
-    for (uint32_t bits = 0; bits < 0x5a800000u; bits += 9973) { // and a sample of all floats
+    for (uint32_t bits = 0; bits < 0x5a800000u; bits += 9973) { // checks a sample of all floats, too
         float x;
         memcpy(&x, &bits, sizeof x);
         check_code(table, x);
@@ -74,7 +74,7 @@ static void check_every_step(const glint_tone_desc *desc)
     assert_int_equal(code_of(table, INFINITY), max);
     assert_int_equal(code_of(table, -INFINITY), 0);
     const float limit = (float)glint_tone_curve_white(desc->curve);
-    // the filmic limit of about 5.6 is between two floats
+    // the filmic limit, about 5.6, lies between two floats
     const float white = desc->curve == GLINT_TONE_CLAMP ? 1 : nextafterf(limit, INFINITY);
     assert_int_equal(code_of(table, white), max);
     assert_int_equal(code_of(table, 1.0001f * white), max);
@@ -91,7 +91,7 @@ static void test_tone_every_step(void **state)
     }
 }
 
-static void test_tone_known(void **state) // I1, I2, I3
+static void test_tone_known(void **state) // test cases I1, I2, I3
 {
     (void)state;
     glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUND_NEAREST, 8, 0};
@@ -135,7 +135,7 @@ static void test_tone_counts(void **state)
     // 2 becomes exactly white, which is not clipped
     glint_tone_row8(table, 0.5f, r, g, b, 6, rgb, &clipped, &nonfinite);
     assert_int_equal(clipped, 13);
-    desc.curve = GLINT_TONE_REINHARD; // clips nothing
+    desc.curve = GLINT_TONE_REINHARD; // this curve clips nothing
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
     glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
     assert_int_equal(clipped, 13);

@@ -39,7 +39,7 @@ static void add_solid(glint_scene *scene, double reach)
     d.radius = reach * between(0.005, 0.08);
     place(reach, d.center);
     place(0.1 * reach, size);
-    if (one_in(3)) // long enough to reach from behind the eye to far ahead
+    if (one_in(3)) // it extends from behind the eye to far ahead
         size[below(3)] *= 20;
     for (int c = 0; c < 3; c++) {
         d.base[c] = d.min[c] = d.center[c];
@@ -87,7 +87,7 @@ static void aim(glint_scene *scene, double reach)
     glint_light *light;
     place(0.3 * reach, c.eye);
     place(reach, c.at);
-    if (below(2)) { // looks along an axis, where boxes are equally tight on the screen and in the world
+    if (below(2)) { // the camera looks along an axis, where boxes are equally tight on the screen and in the world
         memcpy(c.at, c.eye, sizeof c.at);
         c.at[2 * below(2)] += reach;
     }
@@ -126,7 +126,8 @@ static glint_scene *clutter(uint64_t seed)
     return scene;
 }
 
-/// samples: per pixel. adaptive: threshold of adaptive sampling, or 0.
+/// Compares all instruction sets with the reference, with `samples` samples per pixel. `adaptive` is the threshold of
+/// adaptive sampling, or 0.
 static void same_as_reference(uint64_t seed, int samples, double adaptive)
 {
     static const char *const sets[] = { "generic", "avx2", "avx512" };

@@ -43,7 +43,7 @@ static void set_lattice_triangle(glint_prim *prim, const glint_prim *last)
     } while (!(length3(n) > 0));
 }
 
-/// An axis-aligned solid, with its axes in any order.
+/// Makes an axis-aligned solid, with its axes in any order.
 static void set_lattice_solid(test_scene *scene, uint32_t i)
 {
     glint_solid *solid = &scene->solids[i];
@@ -94,7 +94,7 @@ static void place_on(const glint_prim *prim, double point[3])
 
 // ---- cast --------------------------------------------------------------------------------------------------------
 
-static uint64_t met, on_solids; ///< rays that hit something; rays that hit a solid
+static uint64_t met, on_solids; ///< number of rays that hit something, and of rays that hit a solid
 
 /// Approximate distance of a point from the surface of a unit shape.
 static double off_unit(uint32_t form, double tube, const double k[3])
@@ -238,7 +238,7 @@ static void test_cast(void **state)
 
 static uint64_t open_lanes, dark_lanes;
 
-/// Points anywhere and on triangles, as surface makes them, with view directions from anywhere.
+/// Places points on triangles, as surface does, and anywhere else, with view directions from anywhere.
 static void place_points(glint_occlude_args *args, const test_scene *scene, int precision, uint32_t *prim,
                          const void *slack)
 {
@@ -275,7 +275,7 @@ static void occlude_case(int precision, bool odd)
                                 .slack = input(real_kind(precision), n) };
     args.lit[0] = masks(groups);
     lattice_way(args.position);
-    if (one_in(3)) // off a plane by a tiny amount
+    if (one_in(3)) // moves the point off a plane by a tiny amount
         args.position[below(3)] += either_sign(unit * power_of_ten(-17, -12));
     if (!args.directional)
         args.scale = ldexp(1, -ilogb(length3(args.position)));

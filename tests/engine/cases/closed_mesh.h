@@ -27,7 +27,7 @@ static inline void add_closed_triangle(closed_mesh *mesh, const double a[3], con
 /// A closed mesh of 32 triangles around `middle`: a subdivided octahedron whose 18 vertices have random distances.
 static inline void make_star(closed_mesh *mesh, const double middle[3], double low, double high)
 {
-    double at[3][3][3][3]; // indexed by -1, 0, 1 along each axis, plus 1
+    double at[3][3][3][3]; // the vertices, indexed by 1 plus -1, 0 or 1 along each axis
     for (int i = 0; i < 27; i++) {
         const double way[3] = { i / 9 - 1.0, i / 3 % 3 - 1.0, i % 3 - 1.0 };
         const double far = between(low, high) / (1 + 0.4 * (way[0] * way[0] + way[1] * way[1] + way[2] * way[2] - 1));
@@ -36,7 +36,7 @@ static inline void make_star(closed_mesh *mesh, const double middle[3], double l
     }
     for (int octant = 0; octant < 8; octant++) {
         const int x = octant & 1 ? 2 : 0, y = octant & 2 ? 2 : 0, z = octant & 4 ? 2 : 0;
-        const bool odd = (x + y + z) / 2 % 2 == 0; // keeps the corners counter-clockwise
+        const bool odd = (x + y + z) / 2 % 2 == 0; // keeps the corners of every face counter-clockwise
         const double *tip[3] = { at[x][1][1], odd ? at[1][1][z] : at[1][y][1], odd ? at[1][y][1] : at[1][1][z] };
         const double *side[3] = { odd ? at[x][1][z] : at[x][y][1], at[1][y][z], odd ? at[x][y][1] : at[x][1][z] };
         for (int j = 0; j < 3; j++)
@@ -73,15 +73,15 @@ static inline void random_closed_mesh(closed_mesh *mesh)
         return;
     }
     make_star(mesh, middle, 0.3, 1.4);
-    if (one_in(3)) { // a second one, separate or overlapping
+    if (one_in(3)) { // adds a second box, separate or overlapping
         for (int c = 0; c < 3; c++)
             middle[c] += between(-1.5, 1.5);
         make_star(mesh, middle, 0.2, 0.8);
     }
 }
 
-/// inverted: reverses the winding of the triangles. Every corner has its own vertex: only equal positions join
-/// triangles.
+/// Creates a shape from the mesh; `inverted` reverses the winding of the triangles. Every corner has its own vertex,
+/// so that triangles are connected only by equal positions.
 static inline glint_shape *closed_mesh_shape(const closed_mesh *mesh, bool inverted, glint_shading shading, const glint_transform *map)
 {
     glint_shape *shape;
@@ -107,8 +107,8 @@ static inline quad corner_side(const quad p[3], const quad q[3], const double d[
     return (p[1] * q[2] - p[2] * q[1]) * d[0] + (p[2] * q[0] - p[0] * q[2]) * d[1] + (p[0] * q[1] - p[1] * q[0]) * d[2];
 }
 
-/// 1: the ray leaves through the triangle, -1: it enters, 0: no crossing. *t: distance. Within 1e-9 of an edge, *sure
-/// becomes false.
+/// Returns 1 if the ray leaves the mesh through the triangle, -1 if it enters, 0 if it does not cross the triangle.
+/// *t gets the distance. If the ray passes within 1e-9 of an edge, *sure becomes false.
 static inline int quad_crossing(double corner[3][3], const quad from[3], const double d[3], quad *t, bool *sure)
 {
     quad p[3][3], side[3], n[3], f[3], g[3], volume = 0, rise = 0;

@@ -24,7 +24,7 @@
 
 #define KEY "0123456789abcdef0123456789abcdef"
 
-static char folder[64]; ///< of this run, empty between tests
+static char folder[64]; ///< folder of this run, empty between tests
 
 static inline const char *in_folder(const char *name)
 {

@@ -9,8 +9,8 @@
 enum { RECIPE_STEPS = 60 };
 
 typedef struct recipe_step {
-    glint_op op; ///< or GLINT_SSA_INPUT, GLINT_SSA_NUMBER
-    uint32_t operand[GLINT_OPERANDS_MAX]; ///< indices of values
+    glint_op op; ///< an operation, GLINT_SSA_INPUT or GLINT_SSA_NUMBER
+    uint32_t operand[GLINT_OPERANDS_MAX]; ///< indices of earlier values
     double number;
 } recipe_step;
 
@@ -20,9 +20,9 @@ typedef struct recipe {
     uint32_t output[3], output_count;
 } recipe;
 
-static glint_texture *recipe_texture; ///< NULL: no texels
+static glint_texture *recipe_texture; ///< texture that the program reads; NULL: the program reads no texels
 
-/// A typical decimal number, or a special one.
+/// Returns a typical decimal number or, if `odd`, sometimes a special value.
 static inline double recipe_number(bool odd)
 {
     static const double usual[] = { 0, 1, 2, 0.5, -1, 3, 10, 0.1, 0.25, -0.5, 100, 1e7 };
@@ -40,7 +40,7 @@ static inline void recipe_add(recipe *r, recipe_step step, uint32_t results)
     r->value_count += results;
 }
 
-/// Inputs, then numbers, then operations on earlier values, often on numbers.
+/// Makes a random recipe: inputs, then numbers, then operations on earlier values, often on numbers.
 static inline recipe random_recipe(bool odd)
 {
     recipe r = { .output_count = one_in(2) ? 1 : 3 };
@@ -81,7 +81,7 @@ static inline glint_status recipe_op(glint_builder *b, const recipe_step *step, 
     return glint_builder_add(b, step->op, texture, operands, out, error);
 }
 
-/// plain: builds without folding, sharing or fusing.
+/// Builds the recipe's program; if `plain`, without folding, sharing or fusing.
 static inline glint_program *recipe_build(const recipe *r, bool plain)
 {
     glint_builder *b;
@@ -111,7 +111,7 @@ static inline glint_program *recipe_build(const recipe *r, bool plain)
     return program;
 }
 
-/// Stage arguments for a program, with random points. The caller provides the outputs.
+/// Returns stage arguments for a program, with random points. The caller provides the outputs.
 static inline glint_program_args program_inputs(const glint_program *program, uint32_t groups, bool odd)
 {
     glint_program_args args = { .code = &program->code, .group_count = groups };

@@ -12,7 +12,7 @@
 
 #include "engine/glint.h"
 
-/// Returns NULL when this machine lacks the instruction set.
+/// Renders the scene. Returns NULL when this machine lacks the instruction set.
 static inline glint_image *render_with(const glint_scene *scene, const char *isa, const glint_render_desc *desc)
 {
     glint_renderer *renderer;

@@ -65,7 +65,7 @@ static inline size_t element_size(array_kind kind) { return kind == KIND_U16 ? 2
 
 static inline size_t array_bytes(const test_array *a) { return element_size(a->kind) * a->count + 2 * GUARD_BYTES; }
 
-/// The first element: 64-byte aligned, like the arrays of a tile.
+/// Returns the first element: 64-byte aligned, like the arrays of a tile.
 static inline void *array_elements(const test_array *a) { return a->bytes + GUARD_BYTES; }
 
 static inline void *new_array(test_array *list, uint32_t *list_count, const char *name, array_kind kind, uint32_t count)
@@ -118,9 +118,10 @@ static inline double get(const void *array, int precision, uint32_t i)
 
 // ---- Every instruction set in turn -------------------------------------------------------------------------------
 
-static const glint_stages *tested[8]; ///< the reference, then all others that this machine can run
+static const glint_stages *tested[8]; ///< the reference, followed by all other instruction sets that this machine can
+    ///< run
 static uint32_t tested_count;
-static const glint_stages *running; ///< the stages that new_output allocates for
+static const glint_stages *running; ///< the instruction set that runs now; new_output allocates for its outputs
 static uint32_t mismatches;
 static uint64_t case_seed;
 
@@ -155,7 +156,8 @@ static inline void output3(void *array[3], const char *name, array_kind kind, ui
         array[c] = output(name, kind, count);
 }
 
-/// Compares bits, except that all NaNs are equal: the payload depends on the order of operands that the compiler chose.
+/// Returns whether two elements have the same bits. All NaNs count as equal: the payload depends on the order of
+/// operands that the compiler chose.
 static inline bool same_element(const test_array *a, const test_array *b, uint32_t i)
 {
     size_t size = element_size(a->kind);
@@ -198,7 +200,7 @@ static inline void compare_array(const char *stage, const test_array *want, cons
     }
 }
 
-/// Compares the outputs of `running` with the reference's. The reference must have run first.
+/// Compares the outputs of `running` with the outputs of the reference, which must have run first.
 static inline void compare_outputs(const char *stage)
 {
     for (uint32_t k = 0; k < gotten_count; k++)
@@ -215,7 +217,7 @@ static inline void end_case(void)
 
 #define FOR_EACH_TESTED for (uint32_t isa_ = 0; isa_ < tested_count && (running = tested[isa_]); isa_++)
 
-/// The reference's output called `name` in the current case; NULL when the stage has no such output.
+/// Returns the reference's output called `name` in the current case; NULL when the stage has no such output.
 static inline const test_array *wanted_array(const char *name)
 {
     for (uint32_t k = 0; k < wanted_count; k++)
@@ -227,7 +229,7 @@ static inline const test_array *wanted_array(const char *name)
 static inline void run_cases(uint32_t cases, uint64_t seed, void (*one)(int precision, bool odd))
 {
     mismatches = 0;
-    end_case(); // after a failed test
+    end_case(); // clears what a failed test left behind
     for (uint32_t i = 0; i < cases; i += case_step()) {
         random_state = case_seed = seed + i;
         one(i & 1 ? GLINT_FLOAT : GLINT_DOUBLE, i % 3 == 2);
@@ -279,7 +281,7 @@ static inline void random_unit(double v[3])
         v[c] /= length;
 }
 
-/// A unit vector perpendicular to `v`.
+/// Sets `out` to a random unit vector perpendicular to `v`.
 static inline void random_across(const double v[3], double out[3])
 {
     double any[3], length;

@@ -6,13 +6,13 @@
 #include "tests/engine/cases/stage_scene.h"
 
 typedef enum ray_kind {
-    RAYS_OF_EYE, ///< cast_bundle
-    RAYS_OF_PIXELS, ///< likewise, for pixels at arbitrary positions
-    RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< cast_rays, parallel
-    RAYS_OF_LENS, ///< cast_rays, for either projection
-    RAYS_PARALLEL, ///< likewise, one direction for each group
-    RAYS_ALIKE, ///< likewise, nearly the same direction for all
-    RAYS_FREE, ///< cast_rays
+    RAYS_OF_EYE, ///< rays of a perspective camera, for cast_bundle
+    RAYS_OF_PIXELS, ///< rays of pixels at arbitrary positions, for cast_bundle
+    RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< parallel rays, for cast_rays
+    RAYS_OF_LENS, ///< rays of a lens under either projection, for cast_rays
+    RAYS_PARALLEL, ///< parallel rays in each group, for cast_rays
+    RAYS_ALIKE, ///< rays in nearly the same direction, for cast_rays
+    RAYS_FREE, ///< individual rays, for cast_rays
     RAY_KINDS
 } ray_kind;
 
@@ -23,9 +23,9 @@ typedef struct ray_case {
     scene_plan plan;
     test_scene *scene;
     glint_camera_args camera;
-    glint_lens lens; ///< for RAYS_OF_LENS: camera.lens points to it
+    glint_lens lens; ///< the lens that camera.lens points to, for RAYS_OF_LENS
     glint_cast_args cast;
-    const void *origin[3], *direction[3]; ///< for rays stored in arrays
+    const void *origin[3], *direction[3]; ///< origins and directions of rays that are stored in arrays
 } ray_case;
 
 static inline bool is_from_eye(ray_kind kind) { return kind == RAYS_OF_EYE || kind == RAYS_OF_PIXELS; }
@@ -59,7 +59,7 @@ static inline double random_camera(const scene_plan *plan, bool orthographic, gl
     *camera = (glint_camera_args) { .orthographic = orthographic };
     const double height = random_tile(camera), size = plan->size;
     const double distance = size * (one_in(4) ? power_of_ten(4, 7) : one_in(5) ? between(0, 1) : between(1, 10));
-    // from the axis to the edge of the picture
+    // distance from the axis to the edge of the picture
     const double seen = size * (one_in(4) ? power_of_ten(-4, 0) : between(0.3, 3));
     random_unit(camera->forward);
     random_across(camera->forward, camera->right);
@@ -205,14 +205,14 @@ static inline void shoot_free(ray_case *c)
     }
 }
 
-/// Picks rays as the lines that the scene is built around; half of them are at the border of the tile.
+/// Picks rays as the lines around which the scene is built; half of these rays are at the border of the tile.
 static inline void choose_lines(ray_case *c, double length)
 {
     const uint32_t across = c->camera.groups_across, down = c->cast.group_count / across;
     for (uint32_t k = 0; k < 64; k++) {
         uint32_t i = below(c->cast.group_count * GLINT_GROUP);
         double origin[3], direction[3];
-        if (one_in(2)) { // the first or last column or row
+        if (one_in(2)) { // a pixel in the first or last column or row
             uint32_t x = below(4 * across), y = below(4 * down);
             if (one_in(2))
                 x = one_in(2) ? 0 : 4 * across - 1;
@@ -229,7 +229,7 @@ static inline void choose_lines(ray_case *c, double length)
         add_line(&c->plan, c->plan.middle, (const double[3]) { 0, 0, 1 }, c->plan.size);
 }
 
-/// Rays of one kind, and a scene around them. Ends with end_rays.
+/// Makes rays of one kind, and a scene around them. Ends with end_rays.
 static inline void start_rays(ray_case *c, ray_kind kind, int precision)
 {
     memset(c, 0, sizeof *c);

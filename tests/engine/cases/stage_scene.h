@@ -9,17 +9,17 @@
 
 enum { MOST_PRIMS = 3000, MOST_LINES = 256 };
 
-/// A ray, or the segment from a point to a light, that primitives are placed around.
+/// A ray, or the segment from a point to a light. Primitives are placed around it.
 typedef struct test_line {
     double origin[3];
-    double direction[3]; ///< unit
-    double length; ///< length that matters; of a segment, its whole length
+    double direction[3]; ///< unit vector
+    double length; ///< the length along which hits matter; for a segment, its whole length
 } test_line;
 
 /// The properties of a random scene.
 typedef struct scene_plan {
-    double middle[3], size; ///< where primitives are placed that are not near a line
-    double spread; ///< radii are up to this many powers of ten smaller than `size`
+    double middle[3], size; ///< the region for primitives that are not placed near a line
+    double spread; ///< radii are smaller than `size` by up to this many powers of ten
     bool triangles, solids; ///< whether some primitives are triangles, solids
     uint32_t count; ///< number of primitives; 0: random
     uint32_t line_count;
@@ -62,7 +62,7 @@ static inline void set_plane(glint_prim *prim, const double point[3], const doub
     prim->normal[3] = 0;
 }
 
-/// 0, or a random magnitude down to the last digit of 1.
+/// Returns 0, or a random number between 1e-16 and 1 with either sign.
 static inline double slight(void) { return one_in(5) ? 0 : either_sign(power_of_ten(-16, -1)); }
 
 /// A sphere whose silhouette the line touches, or misses by 1e-16 .. 1e-1 radii.
@@ -94,7 +94,7 @@ static inline void set_touching(glint_prim *prim, const test_line *line, double 
     set_sphere(prim, center, radius);
 }
 
-/// A plane through a point of the line or of the scene; some contain the line.
+/// Places a plane through a point on a line or in the scene. Some planes contain the line.
 static inline void set_random_plane(glint_prim *prim, const scene_plan *plan, const test_line *line)
 {
     double point[3], normal[3];
@@ -190,7 +190,7 @@ static inline void set_random_solid(test_scene *scene, uint32_t i, const double 
     memcpy(scene->prims[i].center, center, sizeof scene->prims[i].center);
 }
 
-/// A random point on the unit torus.
+/// Chooses a random point on the unit torus.
 static inline void place_on_torus(double tube, double k[3])
 {
     const double around = between(-4, 4), across = one_in(4) ? 1.5707963267948966 : between(-4, 4);
@@ -200,7 +200,7 @@ static inline void place_on_torus(double tube, double k[3])
     k[2] = tube * sin(across);
 }
 
-/// A random point on a solid, in world space.
+/// Chooses a random point on a solid, in world space.
 static inline void place_on_solid(const test_scene *scene, const glint_prim *prim, double point[3])
 {
     const glint_solid *solid = &scene->solids[prim->item];
@@ -246,13 +246,13 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
 {
     glint_prim *prim = &scene->prims[i];
     const test_line *line = &plan->lines[below(plan->line_count)];
-    // with many primitives most are small, or rays would only ever hit the nearest few
+    // with many primitives most are small; otherwise all rays would hit the nearest few
     double radius = plan->size * power_of_ten(-plan->spread, 0.2) / (one_in(50) ? 1 : cbrt(count));
     double center[3];
     for (int c = 0; c < 3; c++)
         center[c] = plan->middle[c] + plan->size * between(-1, 1);
     const uint32_t kind = below(20);
-    const double largest = plan->size * 1e15; // volumes stay within the range of double
+    const double largest = plan->size * 1e15; // keeps volumes within the range of double
     if (plan->triangles && one_in(2))
         set_random_triangle(prim, i ? prim - 1 : NULL, line, center, radius);
     else if (plan->solids && one_in(2) && largest < 1e60 && largest > 1e-30) {
@@ -265,7 +265,7 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
         set_touching(prim, line, 0, radius);
     else if (kind == 7)
         set_touching(prim, line, line->length, radius);
-    else if (kind == 8) // several hits at the same distance
+    else if (kind == 8) // makes several hits at the same distance
         set_touching(prim, line, line->length - plan->size / 4, radius);
     else if (kind == 9 && i > 0 && scene->prims[i - 1].kind == GLINT_PRIM_SPHERE)
         *prim = scene->prims[i - 1];
@@ -299,12 +299,12 @@ static inline bool is_torus(const test_scene *scene, const glint_prim *prim)
     return prim->kind == GLINT_PRIM_SOLID && scene->solids[prim->item].form == GLINT_FORM_TORUS;
 }
 
-/// The bounds of a bounded primitive, in world space.
+/// Computes the bounds of a bounded primitive, in world space.
 static inline void ends_of(const test_scene *scene, const glint_prim *prim, long double lower[3], long double upper[3])
 {
     for (int c = 0; c < 3; c++) {
         const double *m = scene->solids[prim->kind == GLINT_PRIM_SOLID ? prim->item : 0].forward[c];
-        const bool torus = is_torus(scene, prim); // reaches 1 + tube, which is below 2
+        const bool torus = is_torus(scene, prim); // the torus reaches 1 + tube, which is below 2
         const long double reach =
             prim->kind == GLINT_PRIM_SOLID ? (torus ? 2 : 1) * ((fabsl(m[0]) + fabsl(m[1])) + fabsl(m[2])) : prim->radius;
         lower[c] = (long double)prim->center[c] - reach;
@@ -316,7 +316,7 @@ static inline void ends_of(const test_scene *scene, const glint_prim *prim, long
     }
 }
 
-/// Any frame is valid; most are around the scene, in its own units.
+/// Chooses the frame of reference. Any frame is valid; most frames are around the scene, in the scene's own units.
 static inline void choose_frame(const scene_plan *plan, test_scene *scene)
 {
     glint_geometry_table *table = &scene->table;
@@ -365,7 +365,7 @@ static inline glint_box place_sphere(const glint_geometry_table *table, glint_pr
     return box;
 }
 
-/// Likewise, for primitives without a radius.
+/// Does the same for primitives without a radius.
 static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
 {
     const glint_geometry_table *table = &scene->table;
@@ -389,8 +389,8 @@ static inline glint_box place_corners_of(const test_scene *scene, glint_prim *pr
     return box;
 }
 
-/// The axis of a solid that has one, and the largest distance of its surface from the axis: the perpendicular parts
-/// of the other two columns.
+/// Computes the axis of a solid, if it has one, and the largest distance of its surface from the axis: the
+/// perpendicular parts of the other two columns.
 static inline void place_axis(const glint_geometry_table *table, glint_solid *solid)
 {
     const bool has_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_CONE ||
@@ -451,7 +451,7 @@ static inline void build_index(test_scene *scene)
     table->solids = scene->solids;
 }
 
-/// reach: how far the surface on the plane extends from `center`.
+/// Sets the plane of a flat primitive. `reach` is the distance up to which the primitive extends from `center`.
 static inline void set_face(glint_face *face, const double normal[3], const double at[3], const double center[3],
                             double reach)
 {
