@@ -19,7 +19,7 @@ enum { SIDE = 22, SIZE = 40, SEEDS = 36 };
 
 // ---- Sheets ----
 
-/// Placement of a scene's sheets: all coordinates are multiplied by `scale`, then moved.
+/// Placement of a scene: all coordinates of its sheets are multiplied by `scale`, then moved.
 typedef struct place {
     double scale, move[3];
 } place;
@@ -30,7 +30,7 @@ static void put(const place *at, const double x[3], double out[3])
         out[c] = x[c] * at->scale + at->move[c];
 }
 
-/// A sheet of SIDE x SIDE quads from `corner` along `across` and `down`, with bumps, two triangles each. Each sheet
+/// Adds a bumpy sheet of SIDE x SIDE quads, two triangles each, from `corner` along `across` and `down`. Each sheet
 /// has its own material and shading, and one or two sides.
 static void add_sheet(glint_scene *scene, const place *at, const double corner[3], const double across[3],
                       const double down[3], double bumps)
@@ -74,7 +74,7 @@ static void add_sheet(glint_scene *scene, const place *at, const double corner[3
     glint_material_release(material);
 }
 
-/// A ball among the triangles.
+/// Adds a ball among the triangles.
 static void add_ball(glint_scene *scene, const place *at, const double center[3], double radius)
 {
     glint_shape *shape;
@@ -109,8 +109,8 @@ static glint_scene *lit_scene(const place *at, const double eye[3], const double
     return scene;
 }
 
-/// Sheets behind each other: some coplanar with the eye or the light, some around the eye, some that shadow
-/// themselves only through their bumps.
+/// Makes sheets behind each other: some are coplanar with the eye or the light, some surround the eye, and some
+/// shadow themselves only through their bumps.
 static glint_scene *sheets(uint64_t seed, glint_precision precision)
 {
     random_state = seed;
@@ -126,11 +126,11 @@ static glint_scene *sheets(uint64_t seed, glint_precision precision)
         double corner[3] = { -wide / 2, -wide / 2, z }, across[3] = { wide, 0, 0 }, down[3] = { 0, wide, 0 };
         const double *from = below(2) ? eye : light;
         switch (precision == GLINT_FLOAT ? 1 + below(4) : below(5)) {
-        case 0: // coplanar with the eye or the light; not in float, where hits in the plane are arbitrary
+        case 0: // a sheet coplanar with the eye or the light; not in float, where hits in the plane are arbitrary
             for (int c = 0; c < 3; c++)
                 down[c] = (from[c] - corner[c]) * (below(3) ? 0.5 : 1.5);
             break;
-        case 1: // around it
+        case 1: // a sheet around the eye or the light
             for (int c = 0; c < 3; c++)
                 corner[c] = from[c] - across[c] / 2 - down[c] / 2 + (c == 2 ? between(-0.1, 0.1) : 0);
             break;

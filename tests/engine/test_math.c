@@ -13,10 +13,10 @@
 #include "engine/base/math.h"
 #include "tests/engine/cases/random.h"
 
-#define MAX_ULP 0.51 // results are sums of two doubles with a relative error below 2^-60, rounded once
-#define MAX_ULP_SUBNORMAL 0.76 // rounded twice
+#define MAX_ULP 0.51 // a result is a sum of two doubles with a relative error below 2^-60, and is rounded once
+#define MAX_ULP_SUBNORMAL 0.76 // subnormal results are rounded twice
 
-/// A random sign and mantissa, with the exponent uniform in low .. high.
+/// Returns a number with a random sign and mantissa, and with an exponent uniform in low .. high.
 static double random_scaled(int low, int high)
 {
     double m = between(1, 2);
@@ -95,7 +95,7 @@ static void check_angle_function(const char *name, double (*ours)(double), mpfr_
     }
     for (int i = 0; i < 10000; i++) {
         try_one(&worst, ours, theirs, random_scaled(-1070, 1022));
-        double near = (double)(1 + random_bits() % 100000) * 0x1.921fb54442d18p+0; // next to a multiple of pi/2
+        double near = (double)(1 + random_bits() % 100000) * 0x1.921fb54442d18p+0; // close to a multiple of pi/2
         try_one(&worst, ours, theirs, near);
         try_one(&worst, ours, theirs, nextafter(near, 0));
     }
@@ -164,7 +164,7 @@ static void test_pow(void **state)
         try_power(&worst, between(0, 1), 1 / 2.4);
     }
     check_worst("pow", &worst);
-    for (int base = -40; base <= 40; base++) { // exact when the power is representable
+    for (int base = -40; base <= 40; base++) { // pow is exact when the power is representable
         double exact = 1;
         for (int n = 0; n <= 9; n++, exact *= base)
             assert_true(glint_pow(base, n) == exact);

@@ -10,7 +10,7 @@
 
 #include "engine/glint.h"
 
-/// `call` must refuse the argument `name`, and must fill `error`.
+/// Checks that `call` refuses the argument `name` and fills `error`.
 #define REFUSES(name, call) \
     do { \
         glint_error error = { 0 }; \
@@ -86,7 +86,7 @@ static void test_null_of_scenes(void **state)
     REFUSES("group", glint_group_add(NULL, p.shape, &error));
     REFUSES("child", glint_group_add(p.group, NULL, &error));
     REFUSES("child", glint_group_remove(p.group, NULL, &error));
-    assert_int_equal(glint_scene_add_shape(p.scene, NULL, NULL), GLINT_ERR_INVALID); // without an error struct
+    assert_int_equal(glint_scene_add_shape(p.scene, NULL, NULL), GLINT_ERR_INVALID); // a call without an error struct
     assert_int_equal(glint_scene_shape_count(p.scene), 0);
     assert_int_equal(glint_group_count(p.group), 0);
     destroy(&p);

@@ -35,10 +35,10 @@ static quad root(quad x)
     return y;
 }
 
-/// The side of a cylinder or cone as described, before stretch and translation.
+/// The side of a cylinder or cone as its description says, before stretch and translation.
 typedef struct side {
-    quad from[3], along[3]; ///< the centre of one end or the apex, and the unit vector to the other end
-    quad length, radius, slope; ///< radius at z is radius + slope z
+    quad from[3], along[3]; ///< the centre of one end, or the apex, and the unit vector to the other end
+    quad length, radius, slope; ///< the radius at distance z from that end is radius + slope z
     quad stretch[3], move[3];
 } side;
 
@@ -70,8 +70,8 @@ static glint_shape *random_shape(side *s)
     return shape;
 }
 
-/// Intersects the line o + t d with the side, including both ends. *close: a hit is at an end, or the line is so
-/// nearly tangent that rounding decides. Returns the number of hits.
+/// Intersects the line o + t d with the side, including both ends. *close becomes true if a hit is at an end, or if
+/// the line is so nearly tangent that rounding decides. Returns the number of hits.
 static int meet(const side *s, const quad o[3], const quad d[3], quad t[2], bool *close)
 {
     quad f[3], e[3];
@@ -99,7 +99,7 @@ static int meet(const side *s, const quad o[3], const quad d[3], quad t[2], bool
     return count;
 }
 
-/// The outward normal at a point of the side, not normalised.
+/// Computes the outward normal at a point of the side, not normalised.
 static void slope_at(const side *s, const quad p[3], quad n[3])
 {
     quad f[3];
@@ -156,7 +156,7 @@ typedef struct tally {
     int hits, misses, within, shadows, lights;
 } tally;
 
-/// Returns whether light reaches the visible side of the point. *close: rounding decides.
+/// Returns whether light reaches the visible side of the point. *close becomes true if rounding decides.
 static bool reached(const side *s, const quad p[3], const quad n[3], const double eye[3], const double light[3],
                     bool *close)
 {
@@ -172,7 +172,7 @@ static bool reached(const side *s, const quad p[3], const quad n[3], const doubl
     bool open = facing > 0;
     for (int i = 0; i < count; i++) {
         if (fabs((double)t[i]) < 1e-12)
-            continue; // the starting point
+            continue; // the ray's starting point does not count as a hit
         *close = *close || fabs((double)t[i]) < 1e-6 || fabs((double)t[i] - 1) < 1e-6;
         open = open && !(t[i] > 0 && t[i] < 1);
     }
@@ -254,14 +254,14 @@ static void leaving_within(void **unused)
         m.has_mirror = true;
         assert_int_equal(glint_material_create(&m, &material, NULL), GLINT_OK);
         d.material = material;
-        d.base[1] = cone ? 4 : 0; // stands on its apex
+        d.base[1] = cone ? 4 : 0; // the cone stands on its apex
         d.top[1] = cone ? 0 : 4;
         d.radius = cone ? 4 : 1;
         d.capped = false;
         assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
-        // The tube, looking down at 45 degrees: hits x = 1 at y = 3.5 and x = -1 at y = 1.5, then leaves at the
-        // bottom: 0.5 * 0.5. The cone, with a right angle at its apex, looking horizontally: reflected upwards at 45
-        // degrees, leaves through the base: 0.5.
+        // In the tube the ray goes down at 45 degrees, hits x = 1 at y = 3.5 and x = -1 at y = 1.5, then leaves at
+        // the bottom: 0.5 * 0.5. In the cone, which has a right angle at its apex, the ray is horizontal, is
+        // reflected upwards and leaves through the base: 0.5.
         const double eye[3] = { 0, cone ? 2 : 4.5, 0 }, at[3] = { 1, cone ? 2 : 3.5, 0 };
         glint_scene *scene = scene_of(shape, eye, at, (double[3]) { 0, 50, 0 });
         glint_scene_desc s = *glint_scene_get(scene);

@@ -7,7 +7,7 @@
 
 #define WIDTH 160
 #define HEIGHT 120
-#define MIDDLE_X (WIDTH / 2 - 1) // centre of an item with an odd width, placed at 0.5
+#define MIDDLE_X (WIDTH / 2 - 1) // the centre pixel of an item with an odd width that is placed at 0.5
 #define MIDDLE_Y (HEIGHT / 2 - 1)
 
 typedef struct world {
@@ -66,7 +66,7 @@ static glint_picture *show(world *w, const char *name, glint_frame_stats *stats)
     return picture;
 }
 
-/// The value of a pixel in a grey picture over a backdrop of 0.
+/// Returns the value of a pixel in a grey picture over a backdrop of 0.
 static int grey(const glint_picture *picture, int x, int y)
 {
     uint8_t row[3 * WIDTH];
@@ -84,10 +84,10 @@ static glint_overlay_desc label_at(double x, double y, const char *text)
     return desc;
 }
 
-#define KEYS 36 ///< overlays of test_key
+#define KEYS 36 ///< number of overlays in test_key
 
-/// A pixel is white where the glyph has a bit, otherwise the picture shows. 13 pixels are the font's own size; at 144
-/// dpi a point has two pixels.
+/// A pixel is white where the glyph has a bit; elsewhere the picture shows through. 13 pixels are the font's own
+/// size; at 144 dpi a point has two pixels.
 static void test_letters(void **state)
 {
     (void)state;
@@ -112,13 +112,13 @@ static void test_letters(void **state)
     }
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         all += grey(picture, i % WIDTH, i / WIDTH) > 0;
-    assert_int_equal(all, lit); // and no other pixels
+    assert_int_equal(all, lit); // no other pixels are lit
     glint_picture_destroy(picture);
     drop_world(&w);
 }
 
 /// A background of opacity o and value b over a pixel value c gives (c (255 - a) + b a) / 255, a = 255 o. With alpha
-/// it also covers transparent pixels.
+/// the background also covers transparent pixels.
 static void test_background(void **state)
 {
     (void)state;
@@ -145,7 +145,7 @@ static void test_background(void **state)
     picture = show(&w, "alpha.png", NULL);
     assert_int_equal(glint_picture_channels(picture), 4);
     uint8_t row[3 * WIDTH];
-    glint_picture_row(picture, 10, 255, row); // a white backdrop shows through by 0.4
+    glint_picture_row(picture, 10, 255, row); // the white backdrop shows through with a share of 0.4
     assert_true(abs(row[3 * 20] - (255 * (255 - a) + ink * a) / 255) <= 1);
     assert_int_equal(row[3 * 19], 255);
     glint_picture_destroy(picture);
@@ -172,7 +172,7 @@ static void test_colors(void **state)
         for (int y = 0; y < 600; y++)
             glint_picture_row(picture, y, 0, rgb + (size_t)y * 600 * 3);
         int found = 0;
-        for (int start = 0; start < 600 * 600 && !found; start++) { // searches for the first colour
+        for (int start = 0; start < 600 * 600 && !found; start++) { // searches for the first colour of the bar
             const size_t step = horizontal ? 3 : 600 * 3;
             int i = 0;
             while (i < 512 && (horizontal ? start % 600 : start / 600) + i < 600) {
@@ -222,14 +222,14 @@ static void test_axes(void **state)
 }
 
 /// Seen from the front, the lowest edge is the x axis and the leftmost edge the y axis, at their projected pixels,
-/// with marks at round numbers. The z axis, which points at the eye, has none. `values` moves the marks. No other
+/// with marks at round numbers. The z axis, which points at the eye, has no marks. `values` moves the marks. No other
 /// pixel has colour.
 static void test_box_axes(void **state)
 {
     (void)state;
     glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
     desc.has_box = desc.has_size = true;
-    desc.size = 8; // space for a number every 19 pixels
+    desc.size = 8; // leaves space for a number every 19 pixels
     const double box[2][3] = { { -4, -3, 0 }, { 4, 3, 2 } };
     memcpy(desc.box, box, sizeof box);
     for (int named = 0; named < 2; named++) {
@@ -242,27 +242,27 @@ static void test_box_axes(void **state)
         view.height = 12; // one unit is 10 pixels
         assert_int_equal(glint_camera_set(glint_scene_get(w.scene)->camera, &view, NULL), GLINT_OK);
         glint_picture *picture = show(&w, "box.png", NULL);
-        for (int x = 42; x < 118; x++) // the edge is at y = 90, with half of the line's width on each side
+        for (int x = 42; x < 118; x++) // the edge is at y = 90, and half of the line's width is on each side
             assert_true(grey(picture, x, 89) > 100 && grey(picture, x, 90) > 100);
         for (int y = 32; y < 88; y++)
             assert_true(grey(picture, 39, y) > 100 && grey(picture, 40, y) > 100);
         for (int y = 0; y < 89; y++)
             for (int x = 41; x < WIDTH; x++)
-                assert_int_equal(grey(picture, x, y), 0); // nothing inside, above or at the right
+                assert_int_equal(grey(picture, x, y), 0); // nothing is drawn inside, above or at the right of the box
         int marks = 0;
         for (int x = 42; x < 118; x++)
             marks += grey(picture, x, 92) > 100 && grey(picture, x - 1, 92) <= 100;
-        const int at[2][2] = { { 60, 100 }, { 56, 104 } }; // -2 and 2; for the range 0 .. 10, 2 and 8
+        const int at[2][2] = { { 60, 100 }, { 56, 104 } }; // marks at -2 and 2; or, for the range 0 .. 10, at 2 and 8
         for (int i = 0; i < 2; i++)
             assert_true(grey(picture, at[named][i], 92) > 100 && grey(picture, at[named][i] - 3, 92) == 0);
-        // 2, 4, 6 and 8; or -2, 0 and 2: marks at the ends are outside these columns
+        // marks at 2, 4, 6 and 8; or at -2, 0 and 2, as the marks at the ends are outside these columns
         assert_int_equal(marks, named ? 4 : 3);
         glint_picture_destroy(picture);
         drop_world(&w);
     }
 }
 
-/// Returns whether a point is inside a triangle of three of the eight points, and so inside their convex hull.
+/// Returns whether a point is inside a triangle of three of the eight points, and so inside the points' convex hull.
 static bool is_within(double at[8][2], double x, double y)
 {
     for (int a = 0; a < 8; a++)
@@ -302,8 +302,8 @@ static void project_box(const glint_overlay_desc *desc, const glint_camera_desc 
     }
 }
 
-/// For every eye outside the box, no axis, mark, number or name covers the box in the picture, and some appear around
-/// the box.
+/// For every eye outside the box, no axis, mark, number or name covers the box in the picture, and some of them
+/// appear around the box.
 static void test_box_outside(void **state)
 {
     (void)state;
@@ -345,7 +345,7 @@ static void test_box_outside(void **state)
     drop_world(&w);
 }
 
-/// A region shows the same pixels as that part of the whole picture.
+/// A picture of a region has the same pixels as that part of the whole picture.
 static void test_region(void **state)
 {
     (void)state;
@@ -368,8 +368,8 @@ static void test_region(void **state)
     drop_world(&w);
 }
 
-/// A changed text gives another key of beauty and other bytes, and runs no stage again. The planes, the other passes
-/// and their keys stay the same. The earlier picture is unchanged.
+/// A changed text changes the key of beauty and the bytes of the file, and runs no stage again. The planes, the other
+/// passes and their keys stay the same. The earlier picture is unchanged.
 static void test_reuse(void **state)
 {
     (void)state;
@@ -446,7 +446,7 @@ static void test_writer(void **state)
     drop_world(&w);
 }
 
-/// The key depends on each field.
+/// The key depends on each field of an overlay.
 static void test_key(void **state)
 {
     (void)state;
@@ -506,7 +506,7 @@ static void test_key(void **state)
 
 int main(void)
 {
-    setenv("GLINT_FONT", "bitmap", 1); // the same pixels on every machine
+    setenv("GLINT_FONT", "bitmap", 1); // uses the font that gives the same pixels on every machine
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
         cmocka_unit_test(test_axes),    cmocka_unit_test(test_box_axes), cmocka_unit_test(test_box_outside),

@@ -15,7 +15,7 @@
 
 static glint_value mul(glint_value a, glint_value b) { return op(GLINT_OP_MUL, a, b, 0); }
 
-/// parity(scale p) ? a : b, of colours.
+/// Makes the program parity(scale p) ? a : b, where a and b are colours.
 static glint_program *checker(double scale, const double a[3], const double b[3])
 {
     glint_value out[3];
@@ -93,7 +93,7 @@ static void release_world(world *w) { glint_scene_release(w->scene); }
 
 static const double white[3] = { 0.9, 0.9, 0.9 }, blue[3] = { 0.1, 0.1, 0.2 };
 
-/// A checkered floor at y = 0: a million pixels against the colours computed here.
+/// Compares a million pixels of a checkered floor at y = 0 with the colours computed here.
 static void test_floor(void **state)
 {
     (void)state;
@@ -158,7 +158,7 @@ static glint_program *random_program(size_t count, double low, double high)
     return end_program(out, count);
 }
 
-/// A shader with steps of n.l, and a highlight with half of the colour.
+/// A shader with steps of n.l, and with a highlight of half the colour.
 static glint_program *random_shader(void)
 {
     glint_value out[6];
@@ -241,9 +241,9 @@ static void random_shape(world *w, glint_material *material)
     add_shape(w, &desc, material);
 }
 
-#define SHEET 6 // quads along a side of a mesh
+#define SHEET 6 // number of quads along a side of a mesh
 
-/// A curved sheet of quads with texture coordinates per vertex, or per corner with seams.
+/// Makes a curved sheet of quads, with texture coordinates per vertex, or per corner with seams.
 static glint_shape *new_sheet(const glint_mesh_desc *like, bool torn, double first)
 {
     double vertices[SHEET + 1][SHEET + 1][3], uv[4 * SHEET * SHEET][2];
@@ -538,7 +538,8 @@ static void test_shader(void **state)
 
 // ---- Reuse ----------------------------------------------------------------------------------------------------------
 
-/// a sin(b p.x) + c p.y, or another operation instead of the sine. The tests change one number at a time.
+/// A program a sin(b p.x) + c p.y, or with another operation instead of the sine. The tests change one number at a
+/// time.
 typedef struct wave {
     double a, b, c;
     bool other;
@@ -554,7 +555,7 @@ static glint_program *wave_program(const wave *v)
     return end_program(&out, 1);
 }
 
-/// The number of programs of a material, one per field.
+/// The number of programs of a material, one for each field.
 enum { WAVES = 8 };
 
 static void set_waves(glint_material *material, const wave waves[WAVES])
@@ -601,7 +602,7 @@ static void edit(uint32_t turn, wave waves[WAVES], glint_material *material, wor
     default:
         v->other = !v->other;
     }
-    if (turn % 5 == 4) { // the surface stays the same
+    if (turn % 5 == 4) { // the ball's surface stays the same
         desc.transform = glint_transform_rotate(axis, 37.0 * turn);
         OK(glint_shape_set(ball, &desc, &error));
     } else if (turn % 5 == 3) {
@@ -639,7 +640,7 @@ static void test_reuse(void **state)
         OK(glint_renderer_create(&options, &renderer, &error));
         for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn += case_step()) {
             edit(turn, waves, material, &w);
-            for (int again = 0; again < 2; again++) { // results are cached when a frame repeats unchanged
+            for (int again = 0; again < 2; again++) { // the renderer caches results when a frame repeats unchanged
                 glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
                 check_same(reused, fresh, "reused", (int)turn);
                 glint_image_release(reused);

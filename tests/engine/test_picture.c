@@ -32,7 +32,7 @@ static glint_shape *ball(double x, double z, double radius, const double diffuse
     return out;
 }
 
-/// Two balls in front of a bright background; `mirror`: reflectance of one of them.
+/// Makes two balls in front of a bright background. `mirror` is the reflectance of one ball.
 static void make_world(world *w, double mirror)
 {
     static const double red[3] = { 0.8, 0.2, 0.1 }, blue[3] = { 0.1, 0.2, 0.9 };
@@ -86,7 +86,7 @@ static glint_render_desc small_frame(double samples, uint32_t passes)
 
 // ---- Alpha ----------------------------------------------------------------------------------------------------------
 
-/// Alpha removes the background's share of every sample that hits nothing, and nothing else.
+/// Alpha removes only the background, from every sample that hits nothing.
 static void test_alpha_passes(void **state)
 {
     (void)state;
@@ -156,8 +156,8 @@ static glint_png decode(const glint_image *image, const glint_render_desc *desc)
     return png;
 }
 
-/// Pixel values by definition: beauty / alpha, and alpha. They are identical when made while rendering or from the
-/// planes.
+/// The pixel values are, by definition, beauty / alpha, and alpha. They are identical whether they are made during
+/// rendering or from the planes.
 static void test_alpha_codes(void **state)
 {
     (void)state;
@@ -291,7 +291,7 @@ static void test_outline_objects(void **state)
     free_world(&w);
 }
 
-/// One shape in front of an orthographic camera. height: of the view, in scene units.
+/// Renders one shape with an orthographic camera. `height` is the height of the view, in scene units.
 static glint_image *outline_of(glint_shape *shape, double height)
 {
     world w;
@@ -355,7 +355,7 @@ static void test_outline_edges(void **state)
     (void)state;
     glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX);
     glint_image *image = outline_of(make(&box), 5);
-    const int edges = inner_lines(image); // 2 units each, at about 10 pixels per unit, seen at an angle
+    const int edges = inner_lines(image); // three edges of 2 units, at about 10 pixels per unit, seen at an angle
     assert_true(edges > 30 && edges < 75);
     glint_image_release(image);
     for (double pixels = 4; pixels <= 25; pixels += 0.7) {
@@ -385,17 +385,17 @@ static void test_outline_edges(void **state)
                                          { -3, -2, -2 }, { 3, -2, -2 }, { 3, 2, -2 }, { -3, 2, -2 } };
     static const double valley[6][3] = { { -2, -1, 2 }, { 0, -1, 0 }, { 0, 1, 0 }, { -2, 1, 2 }, { 2, -1, 2 }, { 2, 1, 2 } };
     image = outline_of(two_quads(&sheets[0][0], 8, (const uint32_t[]) { 0, 1, 2, 3, 4, 5, 6, 7 }), 5);
-    const int steps = inner_lines(image); // along the top and the side of the front sheet: 4 units
+    const int steps = inner_lines(image); // 4 units along the top and the side of the front sheet
     assert_true(steps > 36 && steps < 50);
     glint_image_release(image);
     image = outline_of(two_quads(&valley[0][0], 6, (const uint32_t[]) { 0, 1, 2, 3, 1, 4, 5, 2 }), 5);
-    const int bend = inner_lines(image); // 2 units
+    const int bend = inner_lines(image); // a bend of 2 units
     assert_true(bend > 14 && bend < 30);
     glint_image_release(image);
 }
 
-/// In the file, the lines cover the picture and leave all other pixels untouched: for pixel values and planes, with
-/// and without alpha.
+/// The lines in the file cover the picture and leave all other pixels untouched: in pixel values and planes, with and
+/// without alpha.
 static void test_outline_drawn(void **state)
 {
     (void)state;

@@ -64,7 +64,7 @@ static void test_listing(void **state)
     const glint_value sum = op2(b, GLINT_OP_ADD, op2(b, GLINT_OP_MUL, x, half), y);
     const glint_value again = op2(b, GLINT_OP_ADD, op2(b, GLINT_OP_MUL, x, half), y);
     assert_int_equal(sum, again);
-    op2(b, GLINT_OP_SIN, x, 0); // not needed by any output
+    op2(b, GLINT_OP_SIN, x, 0); // no output needs this value
     assert_int_equal(glint_builder_length(b), 3);
     const glint_value out = op2(b, GLINT_OP_SQRT, sum, 0);
     glint_program *p = finish(b, &out, 1);
@@ -112,7 +112,7 @@ static void test_pairs(void **state)
     check_listing(b, op2(b, GLINT_OP_ADD, square, two), "r0 = dot p.x p.y p.y p.z p.z p.z\nreturn r0\n");
     check_listing(b, op2(b, GLINT_OP_ADD, two, op2(b, GLINT_OP_MUL, two, z)), // a subexpression used twice
                   "r0 = mul p.x p.y\nr0 = muladd p.y p.z r0\nr0 = muladd r0 p.z r0\nreturn r0\n");
-    const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // which is also an output
+    const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // the product is an output too
     glint_program *p = finish(b, outputs, 3);
     assert_int_equal(glint_program_length(p), 2);
     glint_program_release(p);
@@ -129,7 +129,7 @@ static void test_numbers(void **state)
     assert_true(glint_builder_is_number(b, sum, &got) && got == 0.1 + 0.2);
     assert_int_equal(op2(b, GLINT_OP_MUL, x, number(b, 1)), x);
     assert_int_equal(op2(b, GLINT_OP_SUB, x, number(b, 0)), x);
-    assert_int_not_equal(op2(b, GLINT_OP_ADD, x, number(b, 0)), x); // would turn -0 into 0
+    assert_int_not_equal(op2(b, GLINT_OP_ADD, x, number(b, 0)), x); // x + 0 is not x: the sum turns -0 into 0
     assert_int_equal(op3(b, GLINT_OP_SELECT, number(b, 2), tenth, x), tenth);
     assert_int_not_equal(number(b, 0.0), number(b, -0.0));
     const glint_value outputs[] = { tenth, sum, op2(b, GLINT_OP_SIN, fifth, 0) };
@@ -144,7 +144,7 @@ static void test_numbers(void **state)
     glint_builder_destroy(b);
 }
 
-/// sin(x + i) for many i, then their sum.
+/// Makes sin(x + i) for many i, then the sum of these sines.
 static glint_value sum_of_sines(glint_builder *b, int count, glint_value *sine)
 {
     const glint_value x = read_input(b, GLINT_INPUT_P_X);
@@ -163,8 +163,8 @@ static void expect_failure(glint_status status, const char *part)
         fail_msg("'%s' has no '%s'", error.message, part);
 }
 
-/// A sum of sines in the order of definition needs a row for each; ordered by use, it needs two. When all sines are
-/// used again after the sum, no order helps, and the builder refuses.
+/// A sum of sines needs a row for each sine in the order of definition, but only two rows when ordered by use. When
+/// all sines are used again after the sum, no order helps, and the builder refuses.
 static void test_rows(void **state)
 {
     (void)state;
@@ -231,7 +231,7 @@ static void test_errors(void **state)
     glint_program_release(NULL);
 }
 
-/// x op k.
+/// Makes the program x op k.
 static glint_program *little_program(glint_op op, double k)
 {
     glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
@@ -279,7 +279,7 @@ static const glint_input chain_inputs[CHAIN_INPUTS] = { GLINT_INPUT_N_X, GLINT_I
 
 static double chain_factor(int i) { return 1 + i % 7; }
 
-/// The light times `length` factors 1 + c x, cycling through the inputs x.
+/// Makes a program that multiplies the light by `length` factors 1 + c x. The x cycle through the inputs.
 static glint_program *make_chain(int length)
 {
     glint_builder *b = new_builder(GLINT_PROGRAM_SHADER);
@@ -295,7 +295,8 @@ static glint_program *make_chain(int length)
     return program;
 }
 
-/// Sums the derivatives of the chain's light over its inputs in the first lane; input k changes by weight[k].
+/// Sums the derivatives of the chain's light with respect to its inputs, in the first lane. Input k changes by
+/// weight[k].
 static void sum_gradient(const glint_gradient *gradient, double (*inputs)[GLINT_GROUP], double (*weights)[GLINT_GROUP],
                          double (*sum)[GLINT_GROUP])
 {

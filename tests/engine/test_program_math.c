@@ -34,7 +34,7 @@ static int truth_atan2(mpfr_t r, mpfr_srcptr a, mpfr_srcptr b, mpfr_rnd_t m) { r
 
 // ---- Errors -------------------------------------------------------------------------------------------------------
 
-/// |got - truth| / max(|truth|, least). A correct infinity or NaN counts as 0.
+/// Returns the error |got - truth| / max(|truth|, least). A correct infinity or NaN counts as 0.
 static double error_of(glint_op op, mpfr_function *truth, double a, double b, double least)
 {
     mpfr_t x, y, want;
@@ -70,8 +70,8 @@ typedef struct function_case {
     glint_op op;
     mpfr_function *truth;
     draw *a, *b;
-    double bound; ///< as stated in program/elementary.h
-    double least; ///< the error is relative to the truth, or to this value where the truth is smaller
+    double bound; ///< largest allowed error, as stated in program/elementary.h
+    double least; ///< the error is relative to the truth, or to `least` where the truth is smaller
 } function_case;
 
 static const function_case functions[] = {
@@ -132,9 +132,9 @@ static void test_special_values(void **state)
         }
 }
 
-/// x^s as used in shading: seven digits, and 0 below 2^-40, which changes no 16-bit pixel value. The logarithm of the
-/// result is a product of floats: s and x are each rounded by a relative 2^-24 at most, the logarithm is within three
-/// such errors, and the product adds one.
+/// Checks x^s as used in shading. It is right to seven digits, and 0 below 2^-40, which changes no 16-bit pixel
+/// value. The logarithm of the result is a product of floats: s and x are each rounded by a relative 2^-24 at most,
+/// the logarithm is within three such errors, and the product adds one.
 static void test_highlight(void **state)
 {
     (void)state;
@@ -175,7 +175,7 @@ static glint_value constant(double x)
     return out;
 }
 
-/// Computes one operation at 113 bits. x: operands.
+/// Computes one operation on the operands x at 113 bits.
 static void truth_of(glint_op op, mpfr_t r, mpfr_t *x)
 {
     mpfr_t t;
@@ -235,7 +235,7 @@ static void truth_of(glint_op op, mpfr_t r, mpfr_t *x)
     mpfr_clear(t);
 }
 
-/// Computes a program's first output at p, at 113 bits.
+/// Computes the first output of a program at the point p, at 113 bits.
 static void truth_at(const glint_program *program, mpfr_t *p, mpfr_t out)
 {
     const glint_program_code *code = &program->code;
@@ -263,8 +263,8 @@ static void truth_at(const glint_program *program, mpfr_t *p, mpfr_t out)
     }
 }
 
-/// Derivative along an axis by a central difference with step 2^-36. The error is the step squared times the third
-/// derivative.
+/// Computes the derivative along an axis by a central difference with step 2^-36. The error is the squared step times
+/// the third derivative.
 static double difference(const glint_program *program, const double at[3], int axis)
 {
     mpfr_t p[3], low, high;
@@ -284,7 +284,7 @@ static double difference(const glint_program *program, const double at[3], int a
 
 static const glint_input axes[3] = { GLINT_INPUT_P_X, GLINT_INPUT_P_Y, GLINT_INPUT_P_Z };
 
-/// Checks the derivatives of an expression at random points, each to a relative 1e-11.
+/// Checks the derivatives of an expression at random points, each to a relative error of 1e-11.
 static void check_slopes(const char *name, glint_value root, double low, double high)
 {
     glint_program *program, *slope;
@@ -331,7 +331,7 @@ static void test_slopes_of_operations(void **state)
     }
 }
 
-/// Typical bump functions.
+/// Tests the derivatives of typical bump functions.
 static void test_slopes_of_programs(void **state)
 {
     (void)state;
@@ -356,8 +356,8 @@ static void test_slopes_of_programs(void **state)
 
 // ---- Derivatives with their own kernels ---------------------------------------------------------------------------
 
-/// Noise by its definition: gradients at integer points (the derivatives there) times the offset from each, blended
-/// by the fade.
+/// Noise by its definition: the gradients at the integer points (the derivatives there) times the offset from each of
+/// these points, blended by the fade.
 static long double noise_by_definition(uint32_t k, const long double p[3])
 {
     long double sum = 0;
@@ -399,7 +399,7 @@ static void test_noise_slopes(void **state)
     }
 }
 
-/// Distances grow at unit rate: the gradients have length 1 and equal the differences.
+/// Cell distances grow by one per unit: the gradients have length 1 and equal the differences.
 static void test_cell_slopes(void **state)
 {
     (void)state;
@@ -423,7 +423,8 @@ static void test_cell_slopes(void **state)
                 kinks += fabs((high[n] - low[n]) / 2e-5 - slope[3 * n + axis]) > 1e-6;
         }
     }
-    // of 30000: where two feature points are equally far between the two points of the difference
+    // kinks among the 30000 points: two feature points are equally far from a point between the points of the
+    // difference
     assert_true(kinks < 60);
 }
 

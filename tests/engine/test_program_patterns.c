@@ -44,8 +44,7 @@ static void test_noise_range(void **state)
     assert_true(fabs(sum / count) < 0.001 && fabs(sqrt(square / count) - 0.25) < 0.05);
 }
 
-/// The highest value that Perlin noise could reach if every gradient were the best one, times the scale, is just
-/// below 1.
+/// Perlin noise would be highest if every gradient were the best one. Times the scale, that value is just below 1.
 static void test_noise_scale(void **state)
 {
     (void)state;
@@ -107,7 +106,7 @@ static void test_noise_unlike(void **state)
         assert_true(fabs(product[k] / square) < 0.02);
 }
 
-/// Chi-square of 64 boxes, with 63 degrees of freedom: above 120 only once in 100000.
+/// Returns chi-square of 64 boxes. With 63 degrees of freedom it is above 120 only once in 100000 times.
 static double chi_square(const uint32_t box[64], double count)
 {
     double sum = 0;
@@ -157,13 +156,13 @@ static void test_gradients(void **state)
         }
     }
     assert_int_equal(count, 2 * 64000);
-    assert_true(fabs(zero[0] / 64000.0 - 6.0 / 16) < 0.01); // x is nonzero in 10 of Perlin's 16
+    assert_true(fabs(zero[0] / 64000.0 - 6.0 / 16) < 0.01); // x is nonzero in 10 of Perlin's 16 gradients
     for (int k = 0; k < 3; k++)
         assert_true(fabs(sum[k]) < 800);
 }
 
-/// A distance grows no faster than the point moves, and the second distance is no smaller than the first. This holds
-/// when no feature point is overlooked, and fails at the borders of the search otherwise.
+/// A distance grows no faster than the point moves, and the second distance is no smaller than the first. If the
+/// search overlooked a feature point, this would fail at the borders of the search.
 static void test_cells(void **state)
 {
     (void)state;
@@ -185,7 +184,7 @@ static void test_cells(void **state)
             assert_true(fabs(a[n] - b[n]) <= sqrt(way2) + 1e-12);
         far = a[1] > far ? a[1] : far;
     }
-    assert_true(far > 1.1 && far < 1.7); // so that the outer cubes were needed
+    assert_true(far > 1.1 && far < 1.7); // the distances are so large that the outer cubes were needed
 }
 
 static void test_parity(void **state)

@@ -18,8 +18,8 @@ static glint_render_desc desc_of(double exposure, double threshold)
     return glint_plan_base(&desc);
 }
 
-/// Each row has one colour in its even pixels, and colours that differ by about the threshold in between. Some pixels
-/// have special values.
+/// The even pixels of a row have one colour. The odd pixels have colours that differ from it by about the threshold.
+/// Some pixels have special values.
 static void paint(glint_image *image, double threshold)
 {
     const float odd[4] = { NAN, HUGE_VALF, -1, 0x1p-140F };
@@ -34,7 +34,7 @@ static void paint(glint_image *image, double threshold)
     }
 }
 
-/// Compares neighbours in a row of the picture, by its pixel values or by estimates.
+/// Compares neighbours in a row of the picture, by the pixel values or by estimates of them.
 static uint32_t compare_row(const glint_refine *refine, size_t y)
 {
     _Alignas(64) float light[48] = { 0 }, code[4][48], id[48] = { 0 };
@@ -123,7 +123,7 @@ static void estimate_case(int precision, bool odd)
     }
 }
 
-/// Values of a line that often equal another line's, and pixel values near the bounds.
+/// Fills a line with values that often equal another line's, and with pixel values around the limits `low` and `high`.
 static void fill_line(float *const line[GLINT_DIFFER_VALUES], bool odd)
 {
     for (uint32_t i = 0; i < GLINT_DIFFER_LENGTH; i++) {
@@ -193,7 +193,7 @@ static void test_kernels(void **unused)
 
 // ---- A picture with pixel values only, whose base stores no light ----
 
-/// Balls over a floor, under a light of this intensity.
+/// Makes balls over a floor, under a light of this intensity.
 static glint_scene *make_balls(double strength)
 {
     glint_scene *scene = make_floor((const double[3]) { 0, 3, 9 }, (const double[3]) { 0, 0.8, 0 });
@@ -232,8 +232,8 @@ static glint_image *render_codes(const glint_scene *scene, uint32_t passes, int 
     return image;
 }
 
-/// A picture without stored light has the pixel values and counts of one with its light: with no, some or nearly all
-/// values clipped, and with infinite light.
+/// A picture without stored light has the same pixel values and counts as a picture with stored light: when no, some
+/// or nearly all values are clipped, and with infinite light.
 static void test_codes_alone(void **unused)
 {
     static const double strength[4] = { 0.4, 1.9, 30, 1e39 };

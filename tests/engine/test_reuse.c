@@ -49,18 +49,18 @@ static void random_color(double c[3])
 // ---- Every field of every description -------------------------------------------------------------------------------
 
 typedef enum kind {
-    COLOR, ///< three numbers, some of them 0
+    COLOR, ///< three numbers, some of which are 0
     VECTOR,
     NUMBER,
     WHOLE, ///< a whole number stored as a double
     FLAG,
     CHOICE, ///< an enumeration or int below `high`
     BITS, ///< a mask of `high` bits
-    DEPTH, ///< 8 or 16
+    DEPTH, ///< bit depth: 8 or 16
     TRANSFORM,
-    REGION, ///< x, y, width, height; or none
-    SKY, ///< one of the patterns below, or none
-    FIXED ///< not set here: a name, a kind, or a field that is set in another way
+    REGION, ///< x, y, width, height; or no region
+    SKY, ///< one of the background patterns below, or none
+    FIXED ///< a field that is not set here: a name, a kind, or a field that is set in another way
 } kind;
 
 typedef struct field {
@@ -88,8 +88,8 @@ static void add_field(field *list, size_t *count, field f)
     list[(*count)++] = f;
 }
 
-/// Adds each field of an object's table once, with its has_ flag and its program. Numbers without a narrow range go
-/// up to four times the default.
+/// Adds each field of an object's table once, with the field's has_ flag and program. Numbers without a narrow range
+/// go up to four times the default.
 static void add_rows(glint_object_kind object, field *list, size_t *count)
 {
     static const struct {
@@ -197,7 +197,7 @@ static void set_transform(glint_transform *out)
     *out = which == 0 ? glint_transform_identity() : which == 1 ? turn : glint_transform_product(&turn, &scale);
 }
 
-/// A region inside the smallest frame, or none.
+/// Sets a region inside the smallest frame, or none.
 static void set_region(double out[4])
 {
     const double region[4] = { draw(30), draw(20), 1 + draw(30), 1 + draw(20) };
@@ -207,7 +207,7 @@ static void set_region(double out[4])
         out[i] = out[2] > 0 && out[3] > 0 ? out[i] : 0;
 }
 
-#define SKIES 3 ///< the first two differ only in a number
+#define SKIES 3 ///< number of backgrounds; the first two differ only in a number
 static glint_program *skies[SKIES];
 
 /// Backgrounds that depend on the direction's height and on its position in a panorama.
@@ -346,7 +346,7 @@ static void edit_shape(world *w)
 {
     uint32_t i = draw(SHAPES);
     glint_shape *shape = w->shapes[i];
-    if (glint_group_count(shape) && draw(2)) // sometimes edits a child of the group
+    if (glint_group_count(shape) && draw(2)) // sometimes edits a child of the group instead
         shape = glint_group_child(shape, draw((uint32_t)glint_group_count(shape)));
     glint_shape_desc d = *glint_shape_get(shape);
     if (draw(6) == 0) {
@@ -405,7 +405,7 @@ static glint_shape *new_mesh(const glint_shape_desc *like)
     return shape;
 }
 
-/// A group with every solid, and a smaller copy of all of them.
+/// Makes a group with every solid, and with a smaller copy of all of them.
 static glint_shape *new_group(const glint_shape_desc *like)
 {
     glint_shape *outer, *inner, *part;
@@ -429,7 +429,7 @@ static glint_shape *new_group(const glint_shape_desc *like)
     return outer;
 }
 
-/// A box minus a cylinder and minus the intersection of a ball and a half-space.
+/// Makes a box minus a cylinder and minus the intersection of a ball and a half-space.
 static glint_shape *new_combined(const glint_shape_desc *like)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_SPHERE, GLINT_SHAPE_PLANE };
@@ -458,7 +458,7 @@ static void make_world(world *w)
     make_skies();
     glint_camera_desc c = glint_camera_desc_default();
     c.eye[1] = 2;
-    c.w = c.h = 40; // which must be set together
+    c.w = c.h = 40; // w and h must be set together
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = {
@@ -563,7 +563,8 @@ static void open_both(glint_renderer_desc desc, glint_renderer *both[2])
     }
 }
 
-/// Renders a frame with both renderers, which must give the same picture. stats: of the first renderer; may be NULL.
+/// Renders a frame with both renderers, which must give the same picture. *stats, unless NULL, gets the statistics of
+/// the first renderer.
 static void render_both(const world *w, glint_renderer *const both[2], glint_frame_stats *stats, int frame)
 {
     glint_plan *plan;
@@ -606,7 +607,7 @@ static void edits(size_t memory, int threads, bool adaptive, double limit_s)
     make_world(&w);
     const double start = seconds();
     uint64_t reused = 0, edit = 0;
-    glint_image *last = NULL; ///< retained, so that the renderer must not write into it again
+    glint_image *last = NULL; ///< a retained picture, into which the renderer must not write again
     void (*const kinds[])(world *) = { edit_material, edit_material, edit_light, edit_light, edit_shape, edit_frame };
     for (; seconds() - start < limit_s; edit++) {
         if (draw(8)) // sometimes nothing changes
@@ -640,7 +641,7 @@ static void edits(size_t memory, int threads, bool adaptive, double limit_s)
     glint_renderer_destroy(fresh);
 }
 
-/// A separate seed for each test. `make soak` uses other seeds than `make check`.
+/// Returns a separate seed for each test. `make soak` uses other seeds than `make check`.
 static uint64_t seed(uint64_t test)
 {
     const char *other = getenv("GLINT_SEED");
@@ -683,8 +684,8 @@ static void reused_equals_fresh_with_little_memory(void **unused)
         edits(memory, 8, false, limit_s(2) / 14);
 }
 
-/// Each call of shade sums a chunk of an area light's samples. An earlier light that reaches nothing visible, because
-/// it is inside a closed ball, still shifts the start of these chunks.
+/// Each call of shade sums a chunk of an area light's samples. An earlier light inside a closed ball reaches nothing
+/// visible, but shifts the start of these chunks.
 static void a_lamp_that_reaches_nothing(void **unused)
 {
     (void)unused;
@@ -717,7 +718,7 @@ static void a_lamp_that_reaches_nothing(void **unused)
         glint_plan *plan;
         glint_image *a, *b;
         glint_material_desc paint = *glint_material_get(w.materials[1]);
-        paint.diffuse[0] = frame / 12.0; // some tiles change, others do not
+        paint.diffuse[0] = frame / 12.0; // the colour of some tiles changes, the others stay the same
         glint_material_set(w.materials[1], &paint, NULL);
         if (both)
             glint_scene_add_light(w.scene, hidden, NULL);
@@ -767,8 +768,8 @@ static void go_back(world *w)
     assert_int_equal(glint_shape_set(w->shapes[4], &place, NULL), GLINT_OK);
 }
 
-/// Frames with a few positions and colours that return in any order, so that all cached results of a frame are used
-/// again.
+/// Tests frames with a few positions and colours that return in any order, so that a frame uses all its cached
+/// results again.
 static void frames_that_come_back(void **unused)
 {
     (void)unused;
@@ -803,9 +804,9 @@ static double reused_share(const glint_frame_stats *stats, const char *stage)
     return 0;
 }
 
-/// A sweep of shininess runs only the tiles with the highlight, a few of a ball lit from the side. With an exponent
-/// so low that the highlight covers all lit tiles, the others run too. adaptive: the threshold, with four samples per
-/// pixel, where the first frame caches no base; 0: off.
+/// Sweeps the shininess of a ball that is lit from the side. Only the few tiles with the highlight run again. When
+/// the exponent is so low that the highlight covers all lit tiles, the other lit tiles run too. `adaptive` is the
+/// threshold, with four samples per pixel, where the first frame caches no base; 0: off.
 static void sweep_shininess(double adaptive)
 {
     static const double shininess[] = { 2000, 2500, 3000, 1, 2 };
@@ -891,7 +892,7 @@ static void move_the_light(double adaptive, int frames, glint_frame_stats *stats
     open_both(desc, both);
     state = 6;
     make_world(&w);
-    for (int i = 0; i < SHAPES; i++) { // no mirrors, no glass
+    for (int i = 0; i < SHAPES; i++) { // without mirrors and glass
         glint_material_desc m = glint_material_desc_default();
         glint_material_set(w.materials[i], &m, NULL);
     }
@@ -913,7 +914,7 @@ static void hits_under_a_moved_light_are_kept(void **unused)
     glint_frame_stats stats;
     move_the_light(0, 5, &stats);
     assert_true(reused_share(&stats, "cast") == 1);
-    move_the_light(0.1, 9, &stats); // reuses the hits of the first sample of each pixel
+    move_the_light(0.1, 9, &stats); // this run reuses the hits of the first sample of each pixel
     assert_true(reused_share(&stats, "cast") > 0);
 }
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { LIGHTS = 2, CROWD = 400 }; // CROWD: spheres behind the eye, so that caching lights is worthwhile
+enum { LIGHTS = 2, CROWD = 400 }; // CROWD: number of spheres behind the eye, so that caching lights is worthwhile
 
 typedef struct stand {
     glint_scene *scene;
@@ -18,14 +18,14 @@ typedef struct stand {
     glint_material *paint;
     glint_shape *ball, *floor, *crowd[CROWD];
     glint_light *lights[LIGHTS];
-    glint_renderer *renderers[2]; ///< one that reuses results and one that does not
+    glint_renderer *renderers[2]; ///< one renderer that reuses results, and one that does not
     glint_render_desc render;
-    glint_frame_stats stats; ///< of the last frame
+    glint_frame_stats stats; ///< the statistics of the last frame
 } stand;
 
 static uint64_t state;
 
-/// A random integer in 0 .. n - 1.
+/// Returns a random integer in 0 .. n - 1.
 static uint32_t draw(uint32_t n)
 {
     state = state * 6364136223846793005u + 1442695040888963407u;
@@ -144,7 +144,7 @@ static void check(stand *s, int frame)
     glint_plan_destroy(plan);
 }
 
-/// Share of the tiles whose results for a stage came from an earlier frame.
+/// Returns the share of the tiles whose results for a stage came from an earlier frame.
 static double reused(const stand *s, const char *stage)
 {
     for (int i = 0; i < s->stats.stage_count; i++)
@@ -163,7 +163,7 @@ static void a_lamp_that_goes_around(void **unused)
         set_lamp(&s, 0, frame % 7 - 3);
         set_color(&s, 0.01 * frame);
         check(&s, frame);
-        if (frame >= 14) { // first round without, second round with cached results
+        if (frame >= 14) { // the first round has no cached results, the second round has them
             assert_true(reused(&s, "light") == 1);
             assert_true(reused(&s, "occlude") == 1);
         }
@@ -240,7 +240,7 @@ static void dear_pictures_stay(void **unused)
     stand s;
     make_stand(&s, (size_t)512 << 20);
     s.render.samples = 16;
-    for (int again = 0; again < 2; again++) { // the second time, it is cached
+    for (int again = 0; again < 2; again++) { // the second time, the picture is cached
         set_color(&s, 0.8);
         is_given(&s);
         set_color(&s, 0.9);
@@ -346,7 +346,7 @@ static void a_picture_that_is_held(void **unused)
     assert_memory_not_equal(before, after, sizeof before);
     glint_image_release(held);
     glint_image_release(next);
-    // each overwrites the previous one; the light and the colour change in turn
+    // each frame overwrites the previous one; the light and the colour change in turn
     for (int frame = 0; frame < 6; frame++) {
         set_color(&s, 0.1 * (frame / 2));
         set_lamp(&s, 0, frame / 2 + frame % 2);

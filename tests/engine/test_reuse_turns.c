@@ -1,5 +1,5 @@
-/// Frames that differ in more than their objects: another number of samples, another BVH order, more lights than are
-/// cached, only another background. Each equals the same frame rendered afresh.
+/// Successive frames that differ in more than their objects: in the number of samples, the BVH order or the
+/// background, or with more lights than the renderer caches. Each frame equals the same frame rendered afresh.
 #include "engine/glint.h"
 
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { LIGHTS = 70 }; // more than are cached
+enum { LIGHTS = 70 }; // more lights than the renderer caches
 
 typedef struct stand {
     glint_scene *scene;
@@ -18,7 +18,7 @@ typedef struct stand {
     glint_material *paint;
     glint_shape *ball;
     glint_light *lights[LIGHTS];
-    glint_renderer *renderers[2]; ///< one that reuses results and one that does not
+    glint_renderer *renderers[2]; ///< one renderer that reuses results, and one that does not
     glint_render_desc render;
 } stand;
 
@@ -44,7 +44,7 @@ static void make_stand(stand *s, int lights)
     whole.camera = s->camera;
     assert_int_equal(glint_scene_set(s->scene, &whole, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_shape(s->scene, s->ball, NULL), GLINT_OK);
-    for (int i = 0; i < lights; i++) { // all except the last shine from behind
+    for (int i = 0; i < lights; i++) { // all lights except the last shine from behind
         glint_light_desc light = glint_light_desc_default(GLINT_LIGHT_DIRECTIONAL);
         light.direction[0] = light.direction[1] = 0;
         light.direction[2] = i + 1 < lights ? 1 : -1;
@@ -113,7 +113,7 @@ static void other_samples(void **state)
         s.render.samples = samples[i];
         const double sum = check(&s);
         assert_true(sum != last);
-        last = turn_light(&s); // with cached results
+        last = turn_light(&s); // this frame uses cached results
         assert_true(last != sum);
     }
     free_stand(&s);
@@ -147,7 +147,7 @@ static void a_light_beyond_those_cached(void **state)
     assert_true(check(&s) < last);
     last = check(&s);
     glint_material_desc look = *glint_material_get(s.paint);
-    look.shininess = 500; // shrinks the highlight only
+    look.shininess = 500; // only the highlight shrinks
     assert_int_equal(glint_material_set(s.paint, &look, NULL), GLINT_OK);
     assert_true(check(&s) < last);
     free_stand(&s);

@@ -50,7 +50,7 @@ static void make_triangles(soup *s)
     }
 }
 
-/// A sheet of squares at integer positions: with a matching camera, corners and edges are at pixel centres.
+/// Makes a sheet of squares at integer positions. With a matching camera, corners and edges are at pixel centres.
 static void make_sheet(soup *s)
 {
     const uint32_t n = 2 + below(14);
@@ -112,7 +112,7 @@ static glint_camera *make_camera(double scale, const double offset[3])
 {
     glint_camera *camera;
     glint_camera_desc c = glint_camera_desc_default();
-    const bool straight = below(2); // integer positions: rays along axes and through corners
+    const bool straight = below(2); // integer positions give rays along axes and through corners
     for (int k = 0; k < 3; k++) {
         c.eye[k] = offset[k] + scale * (straight ? (k == 2 ? 8 : below(3)) : between(-6, 6));
         c.at[k] = offset[k] + scale * (straight ? (k == 2 ? 0 : (c.eye[k] - offset[k]) / scale) : between(-2, 2));
@@ -201,7 +201,7 @@ static glint_image *render(const glint_scene *scene, const glint_render_desc *r,
     return image;
 }
 
-/// Counts the pixels that differ in any bit of any pass. *hits: pixels of `a` with a hit.
+/// Counts the pixels that differ in any bit of any pass. *hits gets the number of pixels of `a` with a hit.
 static int differing(const glint_image *a, const glint_image *b, int *hits)
 {
     static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID };
@@ -221,8 +221,8 @@ static int differing(const glint_image *a, const glint_image *b, int *hits)
     return count;
 }
 
-/// moved: half of the pictures place their samples by a seed, even a single sample per pixel. Returns the number of
-/// hits.
+/// If `moved`, half of the pictures place their samples by a seed, even a single sample per pixel. Returns the number
+/// of hits.
 static int scanned_and_cast(uint64_t first, uint64_t last, bool moved)
 {
     int hits = 0;
@@ -249,7 +249,7 @@ static void same_as_casting(void **unused)
     assert_true(scanned_and_cast(1, 1000, true) * (int)case_step() > 1000000);
 }
 
-/// Seeds with sheets seen edge-on, where the rays of one pixel run in the plane of triangles.
+/// Tests seeds with sheets that are seen edge-on: the rays of one pixel run in the plane of triangles.
 static void in_the_plane_of_the_eye(void **unused)
 {
     static const uint64_t seeds[] = { 12107, 17819, 17979, 22574, 25546, 35020, 35436, 46600, 54696, 55745, 61770 };
@@ -323,8 +323,8 @@ static bool has_effect(const glint_plan *plan, const char *name)
     return false;
 }
 
-/// Without triangles there is nothing to scan. A few triangles among other primitives are cast; on their own, and
-/// without another need for a BVH, they are scanned. An invalid value is refused.
+/// Without triangles there is nothing to scan. The engine casts rays at a few triangles among other primitives. It
+/// scans the triangles when they are on their own and nothing else needs a BVH. An invalid value is refused.
 static void only_triangles(void **unused)
 {
     (void)unused;

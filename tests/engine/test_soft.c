@@ -15,7 +15,7 @@
 /// A floor seen from above at an angle.
 static glint_scene *make_slanted_floor(void) { return make_floor((double[3]) { 0, 8, 9 }, (double[3]) { 0, 0, 0 }); }
 
-static bool visible; ///< whether lights added from here on are visible
+static bool visible; ///< whether the lights added next are visible
 
 static void add_light(glint_scene *scene, glint_light_kind kind, double height, double radius, double samples)
 {
@@ -37,7 +37,7 @@ typedef struct setting {
     const char *isa;
     int threads;
     bool no_reuse;
-    double samples; ///< per pixel
+    double samples; ///< samples per pixel
     glint_precision precision;
 } setting;
 
@@ -79,7 +79,7 @@ static void nothing_between_costs_no_rays(void **state)
     (void)state;
     glint_scene *scene = make_slanted_floor();
     add_light(scene, GLINT_LIGHT_SPHERE, 6, 0.5, 16);
-    add_ball(scene, (double[3]) { 0, 20, 0 }, 1, 0); // above the light
+    add_ball(scene, (double[3]) { 0, 20, 0 }, 1, 0); // a ball above the light
     assert_int_equal(shadow_rays(scene), 0);
     glint_scene_release(scene);
 }
@@ -90,7 +90,7 @@ static void one_ball_hides_the_whole(void **state)
     glint_scene *scene = make_slanted_floor();
     glint_frame_stats stats;
     add_light(scene, GLINT_LIGHT_SPHERE, 20, 0.5, 16);
-    add_ball(scene, (double[3]) { 0, 15, 0 }, 4, 0); // between the light and the whole visible floor
+    add_ball(scene, (double[3]) { 0, 15, 0 }, 4, 0); // a ball between the light and the whole visible floor
     glint_image *image = render(scene, (setting) { .no_reuse = true }, &stats, NULL);
     float black[3];
     assert_int_equal(glint_image_pixel(image, GLINT_PASS_BEAUTY, SIDE / 2, SIDE / 2, black, NULL), GLINT_OK);
@@ -135,9 +135,9 @@ static void every_way_gives_one_picture(void **state)
     const glint_light_kind kinds[] = { GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK, GLINT_LIGHT_POLYGON, GLINT_LIGHT_SPHERE };
     glint_scene *scene = make_slanted_floor();
     visible = true;
-    for (int i = 0; i < 30; i++) // so many occluders that groups traverse the BVH separately
+    for (int i = 0; i < 30; i++) // adds so many occluders that each group traverses the BVH separately
         add_ball(scene, (double[3]) { i % 6 - 2.5, 1 + 0.1 * i, i / 6 - 2 }, 0.3, 0);
-    add_ball(scene, (double[3]) { 0, 6, 0 }, 1.2, 0); // some of a light's samples are inside it
+    add_ball(scene, (double[3]) { 0, 6, 0 }, 1.2, 0); // a ball that contains some of the light's samples
     for (int precision = 0; precision < 2; precision++)
         for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
             add_light(scene, kinds[k], 5 + (double)k, 1, 19);

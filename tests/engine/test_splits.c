@@ -13,7 +13,7 @@ enum { CASES = 1500 };
 
 static long splits_seen, refused_seen;
 
-/// The program's constants, with new values where `changed` says so.
+/// Returns the program's constants, with new values for the constants that are marked in `changed`.
 static double (*other_numbers(const glint_program *program, const bool *changed))[GLINT_NUMBER_LANES]
 {
     double(*numbers)[GLINT_NUMBER_LANES] = input(KIND_DOUBLE, (program->number_count + 1) * GLINT_NUMBER_LANES);
@@ -115,8 +115,7 @@ static glint_split *split_by(const glint_value *outputs, size_t count, double wh
     return split;
 }
 
-/// A checkerboard with a changing colour: one bit is cached, and all selections run again, even those that do not
-/// change.
+/// A checkerboard with a changing colour: one bit is cached, and all selections run again, even the unchanged ones.
 static void test_board(void **state)
 {
     (void)state;
@@ -155,7 +154,7 @@ static void test_marble(void **state)
     glint_program_release(program);
 }
 
-/// With a changing scale the split would cache the whole point and save nothing. Constants are never cached.
+/// When a scale changes, the split would cache the whole point and save nothing. Constants are never cached.
 static void test_scale(void **state)
 {
     (void)state;
@@ -204,7 +203,7 @@ static uint32_t add_number(recipe *r, double x)
     return r->value_count - 1;
 }
 
-/// A random program whose results are between 0 and 1, except for special values.
+/// Makes a random program whose results are between 0 and 1, except for special values.
 static recipe any_field(bool one)
 {
     recipe r;
@@ -217,7 +216,7 @@ static recipe any_field(bool one)
         add_op(&r, GLINT_OP_SIN, r.output[k], 0, 0);
         const uint32_t wave = r.value_count - 1, scale = add_number(&r, between(0.1, 0.4));
         add_op(&r, GLINT_OP_MULADD, wave, scale, half);
-        if (!one_in(4)) { // otherwise the result may be NaN; `less` selects one of two numbers
+        if (!one_in(4)) { // without this, the result may be NaN; `less` selects one of two numbers
             add_op(&r, GLINT_OP_LESS, half, r.value_count - 1, 0);
             add_op(&r, GLINT_OP_SELECT, r.value_count - 1, scale, half);
         }
@@ -295,7 +294,7 @@ static void add_shape(world *w, glint_shape_kind kind, double x, glint_material 
     glint_shape_desc desc = glint_shape_desc_default(kind);
     const double to[3] = { x, 1, -x };
     glint_shape *shape;
-    if (kind != GLINT_SHAPE_PLANE) // a plane stays at y = 0, so that p.y is one number for all points
+    if (kind != GLINT_SHAPE_PLANE) // a plane stays at y = 0, so that p.y is the same number for all points
         desc.transform = glint_transform_translate(to);
     desc.material = material;
     OK(glint_shape_create(&desc, &shape, &error));
@@ -352,13 +351,13 @@ static void release_world(world *w)
     glint_scene_release(w->scene);
 }
 
-/// Changes a constant of one field. Successive frames change the same one, as a user turning a knob would.
+/// Changes a constant of one field. Successive frames change the same constant, as a user turning a knob would.
 static void turn_knob(world *w, uint32_t knob)
 {
     dressed *d = &w->of[knob % MATERIALS];
     recipe *r = &d->field[knob / MATERIALS % FIELDS];
     r = r->step_count ? r : &d->field[0];
-    uint32_t number = knob / (MATERIALS * FIELDS) % 8; // counted from the end
+    uint32_t number = knob / (MATERIALS * FIELDS) % 8; // index of the constant, counted from the end
     for (uint32_t i = r->step_count; i-- > 0;)
         if (r->step[i].op == (glint_op)GLINT_SSA_NUMBER && number-- == 0)
             r->step[i].number += between(0.001, 0.02);
@@ -381,7 +380,7 @@ static void change(world *w, uint32_t *knob)
     }
     if (kind <= 2)
         *knob = below(100000);
-    if (kind == 4 || kind == 5) // alternates between two constants
+    if (kind == 4 || kind == 5) // the constant alternates between two values
         *knob ^= MATERIALS * FIELDS;
     if (kind == 3)
         turn_knob(w, *knob + 1 + below(1000));
@@ -423,7 +422,7 @@ static glint_renderer *new_renderer(const char *isa, bool fresh)
     glint_renderer_desc desc = { .isa = isa, .threads = 1 + (int)below(3), .no_reuse = fresh };
     glint_renderer *renderer;
     if (!fresh && one_in(4))
-        desc.reuse_memory = 20000 + below(400000); // only a part fits
+        desc.reuse_memory = 20000 + below(400000); // only part of the cached values fits
     OK(glint_renderer_create(&desc, &renderer, &error));
     return renderer;
 }
@@ -482,8 +481,8 @@ static recipe *board_world(world *w)
     return r;
 }
 
-/// Changes the constants of a checkerboard in turn. A changing scale would need too much cache; and when the colour
-/// changes afterwards, the cached values belong to another scale. A negative colour is reported as usual.
+/// Changes the constants of a checkerboard in turn. A changing scale would need too much memory for the cache. When
+/// the colour changes afterwards, the cached values belong to another scale. A negative colour is reported as usual.
 static void test_turns(void **state)
 {
     (void)state;

@@ -19,7 +19,7 @@ static void bounce_case(int precision, bool odd)
         double origin[3], direction[3], v[3];
         random_unit(v);
         get_ray(&c, i, origin, direction);
-        if (one_in(4)) // grazing
+        if (one_in(4)) // grazing rays
             random_across(direction, v);
         const double sign = dot3(v, direction) > 0 ? -1 : 1;
         for (int k = 0; k < 3; k++)
@@ -43,7 +43,7 @@ static void bounce_case(int precision, bool odd)
         args.reflectance = out[6];
         args.total = output("total", KIND_U16, groups);
         geometry(precision)->bounce(&args);
-        for (uint32_t i = 0; i < n; i++) // other lanes may hold anything
+        for (uint32_t i = 0; i < n; i++) // the other lanes may hold anything
             for (int k = 0; k < 7 && !lane_of(args.wanted, i); k++)
                 put(out[k], precision, i, 0);
         compare_outputs("bounce");
@@ -62,7 +62,8 @@ typedef struct answer {
     bool total;
 } answer;
 
-/// Reflects and refracts a ray in the plane z = 0 that falls on the floor y = 0 from the left at an angle of this sine.
+/// Reflects and refracts a ray in the plane z = 0. The ray falls on the floor y = 0 from the left, at an angle with
+/// this sine and cosine.
 static answer ask(double ratio, double sine, double cosine)
 {
     static ALIGNED double direction[3][GLINT_GROUP], normal[3][GLINT_GROUP], ratios[GLINT_GROUP];
@@ -115,7 +116,7 @@ static void test_closed_forms(void **state)
         near(a.reflectance, 1, 0);
         near(a.reflected[0], 0.8, 2e-16);
         near(a.reflected[1], 0.6, 2e-16);
-        a = ask(1, 0.6, 0.8); // no boundary: unchanged
+        a = ask(1, 0.6, 0.8); // no boundary: the ray goes on unchanged
         assert_false(a.total);
         near(a.refracted[0], 0.6, 0);
         near(a.refracted[1], -0.8, 0);

@@ -74,7 +74,7 @@ static void check_sight(const ray_case *c, glint_cast_view *view)
     printf("in_sight %s, seed %llu: false, but something is hit\n", running->name, (unsigned long long)case_seed);
 }
 
-/// views: one for each instruction set, or NULL.
+/// Casts with every instruction set. `views` has one view for each instruction set, or NULL.
 static void cast_with(const ray_case *c, glint_cast_view views[])
 {
     static const char *const names[RAY_KINDS] = { "cast_bundle",     "cast_bundle, pixels", "cast_rays, orthographic",
@@ -97,7 +97,7 @@ static void cast_with(const ray_case *c, glint_cast_view views[])
 
 static void cast_all(const ray_case *c) { cast_with(c, NULL); }
 
-/// Puts special values into some rays, except a tiny direction, whose square is 0 in float.
+/// Puts special values into some rays, but never a tiny direction, whose square would be 0 in float.
 static void spoil_rays(ray_case *c)
 {
     double origin[3], direction[3];
@@ -128,7 +128,7 @@ static void test_cast(void **state)
     run_cases(4 * CASES, 2000, cast_case);
 }
 
-/// Starts a ray on a triangle: in a random direction, or from next to an edge, across that edge and almost in the
+/// Starts a ray on a triangle: either in a random direction, or next to an edge, to cross that edge almost in the
 /// plane.
 static void leave_triangle(ray_case *c, uint32_t i, const glint_prim *prim)
 {
@@ -162,7 +162,7 @@ static void mix_scene(ray_case *c, bool triangles, bool solids)
     c->cast.geometry = &c->scene->table;
 }
 
-/// Rays that start on the primitives, some of them towards the inside.
+/// Tests rays that start on the primitives; some of these rays point inwards.
 static void leaving_case(int precision, bool odd)
 {
     (void)odd;
@@ -180,11 +180,11 @@ static void leaving_case(int precision, bool odd)
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             leave_triangle(&c, i, prim);
         if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_PLANE)
-            continue; // for planes the ray's origin does not matter
+            continue; // for planes, the position of the ray's origin does not matter
         random_unit(direction);
         along3(prim->center, prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0, direction, point);
         put3(c.origin, precision, i, point);
-        if (one_in(3)) { // almost along the surface
+        if (one_in(3)) { // a direction almost along the surface
             random_across(direction, point);
             along3(point, either_sign(power_of_ten(-17, 0)), direction, direction);
         } else {
@@ -204,7 +204,8 @@ static void test_leaving(void **state)
     run_cases(2 * CASES, 7000, leaving_case);
 }
 
-/// The scene is built around one tile and seen from a nearby tile: anything visible there is at its border.
+/// The scene is built around one tile and seen from a nearby tile: any primitive visible in the nearby tile is at its
+/// border.
 static void neighbour_case(int precision, bool odd)
 {
     (void)odd;
@@ -225,10 +226,10 @@ static void test_in_sight(void **state)
     (void)state;
     out_of_sight = 0;
     run_cases(CASES, 3000, neighbour_case);
-    assert_true(out_of_sight > 0 || case_step() > 1); // a run of few cases may have none
+    assert_true(out_of_sight > 0 || case_step() > 1); // a run of few cases may have no such primitive
 }
 
-/// Moves to another tile of the picture, most often a neighbour, and to other sample positions.
+/// Moves the camera to another tile of the picture, most often a neighbour, and to other sample positions.
 static void move_tile(ray_case *c)
 {
     glint_camera_args *camera = &c->camera;
@@ -241,7 +242,7 @@ static void move_tile(ray_case *c)
     shoot_camera(c);
 }
 
-/// Casts several tiles of one picture, each with the cached data of earlier calls.
+/// Casts several tiles of one picture. Each call gets the cached data of earlier calls.
 static void cast_tiles(ray_case *c)
 {
     static glint_cast_view views[sizeof tested / sizeof *tested];
@@ -271,7 +272,7 @@ static void test_tiles(void **state)
 
 // ---- From afar ---------------------------------------------------------------------------------------------------
 
-/// Exactly axis-parallel rays from up to 1e36 away, at spheres that are tiny compared with the distance.
+/// Tests exactly axis-parallel rays from up to 1e36 away, at spheres that are tiny compared with that distance.
 static void afar_case(int precision, bool odd)
 {
     (void)odd;
@@ -314,7 +315,7 @@ static void test_from_afar(void **state)
 
 // ---- Borders of groups ---------------------------------------------------------------------------------------------
 
-/// An axis-aligned camera whose outermost rays of each group run exactly along the group's border.
+/// Sets an axis-aligned camera whose outermost rays of each group run exactly along the group's border.
 static void set_border_camera(glint_camera_args *camera, double distance)
 {
     const double height = random_tile(camera), edge = power_of_ten(-1.5, 0);
@@ -327,7 +328,8 @@ static void set_border_camera(glint_camera_args *camera, double distance)
     camera->eye[axis] = -distance * camera->forward[axis];
 }
 
-/// A ray on the left, right, upper or lower border of a group, and the direction out of the group there.
+/// Chooses a ray on the left, right, upper or lower border of a group, and the direction that leads out of the group
+/// there.
 static void border_ray(const ray_case *c, double origin[3], double direction[3], double outwards[3])
 {
     const glint_camera_args *camera = &c->camera;
@@ -380,7 +382,8 @@ static void test_borders(void **state)
 
 // ---- Groups filled by one primitive --------------------------------------------------------------------------------
 
-/// A sphere or plane whose silhouette runs along the border of a group, exactly or slightly inside or outside.
+/// Sets a sphere or plane whose silhouette runs along the border of a group: exactly on the border, or slightly
+/// inside or outside.
 static void set_along_border(const ray_case *c, glint_prim *prim, double distance)
 {
     double origin[3], direction[3], outwards[3], place[3], center[3];
@@ -464,7 +467,7 @@ static test_scene *tied_scene(const scene_plan *plan)
     return &scene;
 }
 
-/// The lowest id wins. The ray in the middle of the picture points exactly down.
+/// Checks ties: the lowest id wins. The ray in the middle of the picture points exactly down.
 static void ties_case(int precision, bool odd)
 {
     (void)odd;
@@ -506,7 +509,7 @@ static void test_ties(void **state)
 
 // ---- surface -----------------------------------------------------------------------------------------------------
 
-/// Hits as cast leaves them. In odd cases some primitives and distances are replaced.
+/// Makes hits as cast leaves them. In odd cases, replaces some primitives and distances.
 static void make_hits(ray_case *c, bool odd)
 {
     const uint32_t n = c->cast.group_count * GLINT_GROUP;
@@ -584,7 +587,7 @@ static void surface_case(int precision, bool odd)
     end_rays(&c);
 }
 
-/// Computes only points: they equal the points computed with normals, in the requested lanes.
+/// Checks runs that compute only points: in the requested lanes, they equal the points computed with normals.
 static void points_case(int precision, bool odd)
 {
     static _Alignas(64) double points[3][GLINT_TILE_SAMPLES], normals[3][GLINT_TILE_SAMPLES];
@@ -620,10 +623,10 @@ static void points_case(int precision, bool odd)
     end_rays(&c);
 }
 
-/// A light near a primitive or far away, for materials of every kind.
+/// Makes a light near a primitive or far away, and materials of every kind.
 static void make_lamp(const ray_case *c, glint_light_args *light)
 {
-    static glint_shade_material materials[4]; // as many as finish_scene assigns
+    static glint_shade_material materials[4]; // as many materials as finish_scene assigns
     for (uint32_t i = 0; i < COUNT_OF(materials); i++)
         materials[i] = (glint_shade_material) { .highlight = below(3), .least = one_in(3) ? 0 : (float)between(0, 1) };
     *light = (glint_light_args) { .group_count = c->cast.group_count,
@@ -637,7 +640,7 @@ static void make_lamp(const ray_case *c, glint_light_args *light)
                                   .coefficients = { between(0, 2), between(0, 1), between(0, 1) },
                                   .highlights = !one_in(4),
                                   .sparing = one_in(2) };
-    if (one_in(2)) { // lanes covered by a visible light are not lit
+    if (one_in(2)) { // lanes that a visible light covers are not lit
         uint16_t *hits = masks(light->group_count);
         for (uint32_t g = 0; g < light->group_count; g++)
             hits[g] = one_in(2) ? c->cast.hits[g] : hits[g] & c->cast.hits[g];

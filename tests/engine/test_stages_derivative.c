@@ -13,7 +13,7 @@ static double *sixteen(double a, double b)
     return row;
 }
 
-/// Unit vectors, some along axes. like: some equal these vectors or their opposites.
+/// Makes unit vectors, some along axes. Some equal the vectors `like` or their opposites.
 static void units(const double *out[3], const double *const like[3])
 {
     double *row[3];
@@ -61,7 +61,7 @@ static glint_derivative_light any_light(bool turned, bool other)
     return light;
 }
 
-/// A light position away from all points.
+/// Chooses a light position that is away from all points.
 static void any_source(const glint_derivative_points *points, const glint_derivative_light *light, glint_derivative_source *out)
 {
     *out = (glint_derivative_source) { .weight = one_in(3) ? sixteen(0, 1) : NULL, .radiant = !light->directional && one_in(3) };
@@ -99,7 +99,7 @@ static void any_planes(glint_derivative_planes *out)
 {
     *out = (glint_derivative_planes) { .value = { NULL } };
     for (int k = 0; k < GLINT_DERIVED_COUNT; k++) {
-        const int first = k < GLINT_DERIVED_SHININESS ? k / 3 * 3 : k; // a colour has all its channels or none
+        const int first = k < GLINT_DERIVED_SHININESS ? k / 3 * 3 : k; // all channels of a colour vary, or none
         const double most = k == GLINT_DERIVED_SHININESS ? 200 : 1;
         if (k == first ? !one_in(2) : !out->value[first])
             continue;
@@ -108,7 +108,7 @@ static void any_planes(glint_derivative_planes *out)
     }
 }
 
-/// Turns -0 into 0: both signs are the same derivative.
+/// Turns -0 into 0, because both signs are the same derivative.
 static void drop_signs(double *row)
 {
     for (int i = 0; i < GLINT_GROUP; i++)
@@ -121,7 +121,7 @@ static void any_three(bool sloped, double out[3])
         out[c] = sloped && !one_in(4) ? between(-2, 2) : 0;
 }
 
-/// Hits on a moving sphere or plane, or seen by a moving eye.
+/// Buffers for hits on a moving sphere or plane, or hits seen by a moving eye.
 typedef struct any_bend_buffers {
     glint_prim prim;
     glint_derivative_part part;

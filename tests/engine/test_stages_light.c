@@ -9,8 +9,8 @@ enum { CASES = 300 };
 
 static glint_shade_material materials[6];
 
-/// Points, normals, materials and dark lanes as surface leaves them: anything in groups without a hit, and zeros in
-/// the other lanes without one.
+/// Makes points, normals, materials and masks of unlit lanes, as surface leaves them: groups without a hit hold
+/// anything; in the other groups, lanes without a hit hold zeros.
 static void make_points(glint_light_args *args, int precision, bool odd, double size)
 {
     uint32_t n = args->group_count * GLINT_GROUP;
@@ -35,7 +35,7 @@ static void make_points(glint_light_args *args, int precision, bool odd, double 
                 normal[c] = maybe_odd(odd, grazing ? normal[c] * power_of_ten(-30, 0) : normal[c]);
                 direction[c] *= power_of_ten(-2, 2);
             }
-            uint32_t facing = below(10); // the light at the eye, or straight behind the point
+            uint32_t facing = below(10); // the light is at the eye, or straight behind the point
             for (int c = 0; c < 3; c++) {
                 double along = point[c] - args->position[c];
                 direction[c] = maybe_odd(odd, facing == 0 ? along : facing == 1 ? -along : direction[c]);
@@ -66,7 +66,7 @@ static void make_camera(glint_camera_args *camera, int precision, bool odd)
 static void place_light(glint_light_args *args, double distance)
 {
     args->directional = one_in(3);
-    const bool near = fabs(log2(distance)) < 16 && one_in(2); // close enough to 1 for a scale of 1
+    const bool near = fabs(log2(distance)) < 16 && one_in(2); // distances close enough to 1 for a scale of 1
     args->scale = args->directional || near ? 1 : ldexp(1, -ilogb(distance));
     args->attenuated = one_in(2);
     args->highlights = !one_in(4);
@@ -92,7 +92,7 @@ static void make_spot(glint_light_args *args, glint_spot *spot)
     args->attenuated = true;
 }
 
-/// Each lane's sample position in the cone, sometimes at its axis or edge.
+/// Chooses each lane's sample position in the cone, sometimes at the cone's axis or edge.
 static void make_cone(glint_light_sample *light_sample)
 {
     for (int lane = 0; lane < GLINT_GROUP; lane++) {
@@ -127,7 +127,7 @@ static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double
     }
 }
 
-/// Several lights that differ only in their positions.
+/// Makes several lights that differ only in their positions.
 static void make_alike(glint_light_args *args, double (*place)[3])
 {
     args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
@@ -189,7 +189,7 @@ static void light_case(int precision, bool odd)
     }
 }
 
-/// view and facet at such points, with random lit lanes.
+/// Tests view and facet at such points, with random masks of the lanes that the light reaches.
 static void facet_case(int precision, bool odd)
 {
     glint_light_args args, *light = &args;
@@ -252,9 +252,10 @@ static double ulps(float got, long double want)
     return fabs((double)(((long double)got - want) / ldexpl(1, ilogbl(want) - 23)));
 }
 
-/// Worst error in float ulps, as a sum of possible errors. Near 1: f rounded to float 1, the last sum of the
-/// polynomial 0.7, the terms before it 0.2, the last product 0.5, the polynomial 0.34. Below 1, worst just under
-/// sqrt(1/2): x rounded to float 1.02, the last sum 0.5, the rest, on numbers half as large, 0.87.
+/// Largest possible error in float ulps, a sum of these errors. Near 1: 1 from rounding f to float, 0.7 from the last
+/// sum of the polynomial, 0.2 from the terms before it, 0.5 from the last product, 0.34 from the polynomial itself.
+/// Below 1, where the error is largest just under sqrt(1/2): 1.02 from rounding x to float, 0.5 from the last sum,
+/// and 0.87 from the other errors, which belong to numbers half as large.
 #define MAX_ULP_LOG2 2.75
 
 /// log2 through light: with normal and light along z and the ray (1, 0, -s), Phong's x is s^2 / (1 + s^2).

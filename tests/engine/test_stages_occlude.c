@@ -7,9 +7,9 @@ enum { CASES = 3000 };
 
 /// The primitives and the light of a case.
 typedef enum shadow_kind {
-    SHADOWS, ///< any
+    SHADOWS, ///< any primitives and any light
     SHADOWS_OF_SMALL, ///< mostly small spheres
-    SHADOWS_IN_LAYERS ///< many, between points close together and a distant area light
+    SHADOWS_IN_LAYERS ///< many primitives between an area light and distant points that are close together
 } shadow_kind;
 
 typedef struct shadow_case {
@@ -22,7 +22,7 @@ typedef struct shadow_case {
     uint16_t *back;
     void *slack;
     bool soft; ///< whether the light is an area light
-    bool cone; ///< whether samples differ per point, inside a cone
+    bool cone; ///< whether each point has its own samples, inside a cone
 } shadow_case;
 
 // ---- Lights and points -------------------------------------------------------------------------------------------
@@ -75,7 +75,7 @@ static void place_sample(const shadow_case *c, const double axis[3], double radi
 static void place_lamps(shadow_case *c, double distance)
 {
     const bool apart = c->kind == SHADOWS_IN_LAYERS;
-    c->cone = !apart && (case_seed >> 4) % 3 == 0; // independent of precision and odd
+    c->cone = !apart && (case_seed >> 4) % 3 == 0; // chosen by the seed, independently of precision and odd
     const double radius = !c->cone && one_in(8) ? 0 : distance * (apart ? power_of_ten(-3, -0.3) : power_of_ten(-6, 0.5));
     const bool flat = !c->cone && one_in(2);
     double axis[3], lower[3], upper[3];
@@ -105,7 +105,8 @@ static void place_lamps(shadow_case *c, double distance)
     }
 }
 
-/// The points of a tile are usually close together; otherwise its shaft would contain half the scene.
+/// Places the points of a tile. They are usually close together; otherwise the tile's shaft would contain half the
+/// scene.
 static void place_points(shadow_case *c, double light_distance)
 {
     const scene_plan *plan = &c->plan;
@@ -134,7 +135,7 @@ static void place_points(shadow_case *c, double light_distance)
         add_line(&c->plan, plan->middle, (const double[3]) { 0, 0, 1 }, plan->size);
 }
 
-/// Places a point on a triangle, with its rounding error, as surface does.
+/// Places a point on a triangle, and stores the point's rounding error, as surface does.
 static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim)
 {
     const double slack = c->precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
@@ -164,8 +165,8 @@ static void keep_near(shadow_case *c, uint32_t i, const double was[3])
     c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
 }
 
-/// Moves a point onto a primitive, or marks it as on none that could shadow it. few: the larger, the fewer primitives
-/// get points.
+/// Moves a point onto a primitive, or marks the point as being on no primitive that could shadow it. The larger
+/// `few`, the fewer primitives get points.
 static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
 {
     const test_scene *scene = c->scene;
@@ -175,7 +176,7 @@ static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
     if (one_in(3)) {
         c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
         if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
-            c->prim[i] = GLINT_MISS; // their self-shadowing rules depend on the point's position
+            c->prim[i] = GLINT_MISS; // the self-shadowing rules of triangles and solids depend on the point's position
         return;
     }
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
@@ -194,7 +195,7 @@ static void place_on_surface(shadow_case *c, uint32_t i, uint32_t few)
     put3(c->args.point, c->precision, i, point);
 }
 
-/// Moves some points onto their primitive. The others are on none that could shadow them.
+/// Moves some points onto their primitive. The other points are on no primitive that could shadow them.
 static void place_on_surfaces(shadow_case *c)
 {
     const uint32_t few = below(4);
@@ -209,7 +210,7 @@ static void place_on_surfaces(shadow_case *c)
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-/// Replaces most primitives by small spheres at the same position.
+/// Replaces most primitives by small spheres at the same positions.
 static void shrink(shadow_case *c)
 {
     uint32_t left = below(2) * below(GLINT_GRID_OTHERS);
@@ -231,7 +232,7 @@ static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind k
     memset(c, 0, sizeof *c);
     c->precision = precision;
     c->kind = kind;
-    random_place(&c->plan, precision == GLINT_DOUBLE); // no points where float overflows
+    random_place(&c->plan, precision == GLINT_DOUBLE); // avoids points where float overflows
     const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
     c->args.sample_count = 1;
     c->args.prim = c->prim = input(KIND_U32, n);
@@ -283,7 +284,7 @@ static bool is_triangle(const shadow_case *c, uint32_t prim)
     return prim != GLINT_MISS && c->scene->prims[prim].kind == GLINT_PRIM_TRIANGLE;
 }
 
-/// A box as surface gives it: around the lit points, or around all points.
+/// Makes a box as surface gives it: around the points that the light reaches, or around all points.
 static void make_box(const shadow_case *c, glint_point_box *box)
 {
     *box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };
@@ -308,8 +309,8 @@ static void make_box(const shadow_case *c, glint_point_box *box)
         box->only = GLINT_MISS;
 }
 
-static uint32_t settled; ///< cases in which the whole area light resolved some lanes
-static uint32_t gridded; ///< cases in which the light had a grid
+static uint32_t settled; ///< number of cases in which the area light as a whole decided some lanes without rays
+static uint32_t gridded; ///< number of cases in which the light had a grid
 
 /// Creates the grid of a light without samples, if it can have one.
 static glint_light_grid *make_grid(const shadow_case *c)
@@ -348,7 +349,7 @@ static void occlude_all(shadow_case *c)
         for (uint32_t s = 0; s < args.sample_count; s++)
             args.unoccluded[s] = output("open", KIND_U16, args.group_count);
         geometry(c->precision)->occlude(&args);
-        if (c->soft) // rays resolved for the whole light are not counted
+        if (c->soft) // lanes that the whole light decides count no rays
             settled += running != &glint_stages_ref && rays < lit_lanes(c) + 5;
         else
             *(double *)output("rays", KIND_DOUBLE, 1) = (double)rays;
@@ -358,7 +359,7 @@ static void occlude_all(shadow_case *c)
     glint_light_grid_destroy(grid);
 }
 
-/// Counts of lit and shadowed lanes: a useful test needs both.
+/// Counts of unoccluded and shadowed lanes: a useful test needs both.
 static uint32_t open_lanes, dark_lanes;
 
 static void count_lanes(const shadow_case *c)
@@ -372,7 +373,7 @@ static void count_lanes(const shadow_case *c)
 
 // ---- soft_light --------------------------------------------------------------------------------------------------
 
-static uint64_t summed, highlights; ///< lanes that light reached; lanes among them with a highlight
+static uint64_t summed, highlights; ///< number of lanes that the light reached, and of those lanes with a highlight
 
 static void count_sums(const glint_light_args *light)
 {
@@ -384,7 +385,7 @@ static void count_sums(const glint_light_args *light)
     }
 }
 
-/// Random normals and rays; most of them face the light.
+/// Chooses random normals and rays; most of them face the light.
 static void look_at_points(const shadow_case *c, glint_light_args *light, bool odd)
 {
     const uint32_t n = light->group_count * GLINT_GROUP;
@@ -483,7 +484,7 @@ static void soft_light_all(const shadow_case *c, bool odd)
         if (geometry(c->precision)->soft_light(&args))
             compare_outputs("soft_light");
         else
-            free_arrays(gotten, &gotten_count); // too many occluders
+            free_arrays(gotten, &gotten_count); // the case has too many occluders
         assert_true(rays <= (uint64_t)groups * GLINT_GROUP * light.sample_count);
     }
     count_sums(&light);
@@ -512,7 +513,7 @@ static void occlude_case(int precision, bool odd)
     start_shadows(&c, precision, odd, SHADOWS);
     for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
         for (int k = 0; k < 3 && one_in(8); k++) {
-            c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // no longer on a primitive
+            c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // the point is no longer on a primitive
             put(c.args.point[k], precision, i, odd_number());
         }
     occlude_all(&c);
@@ -529,7 +530,7 @@ static void test_occlude(void **state)
     assert_true(settled * case_step() > 100);
 }
 
-/// Many small spheres and a few other surfaces, where the grid is used and double precision decides.
+/// Tests many small spheres and a few other surfaces, where the kernel uses the grid and double precision decides.
 static void occlude_grid_case(int precision, bool odd)
 {
     shadow_case c;
@@ -549,7 +550,7 @@ static void test_occlude_grid(void **state)
     assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
 }
 
-/// Area lights behind more occluders than a list holds.
+/// Tests area lights behind more occluders than a list can hold.
 static void occlude_layers_case(int precision, bool odd)
 {
     shadow_case c;
@@ -565,7 +566,7 @@ static void test_occlude_layers(void **state)
     (void)state;
     open_lanes = dark_lanes = 0;
     run_cases(CASES / 3, 600000, occlude_layers_case);
-    assert_true(open_lanes * case_step() > 2000 && dark_lanes * case_step() > 10000); // many occluders
+    assert_true(open_lanes * case_step() > 2000 && dark_lanes * case_step() > 10000); // these cases have many occluders
 }
 
 /// Cases that failed in the past.
@@ -576,9 +577,10 @@ static void test_occlude_found(void **state)
         glint_precision precision;
         bool odd;
     } found[] = {
-        // a triangle as small as 30 rounding errors: a point that counts as on it is outside its box
+        // a triangle as small as 30 rounding errors: a point that counts as on the triangle is outside the triangle's
+        // box
         { 1021078, GLINT_DOUBLE, false },
-        // a point at no finite position made its cell forget the extent of its other points
+        // a point with a position that is not finite made its cell forget the extent of the cell's other points
         { 3012971, GLINT_FLOAT, true },
         { 3038036, GLINT_DOUBLE, true },
     };

@@ -7,7 +7,7 @@
 
 #define CASES 4000
 
-static uint32_t damaged[2]; ///< programs that were refused, programs that were run
+static uint32_t damaged[2]; ///< number of programs that were refused, and of programs that ran
 
 /// Sets an operand to one number in all lanes: often a power of two, as is common for `mod` and `div`.
 static void put_power(double *x, glint_program_args *args, uint32_t input)
@@ -80,7 +80,7 @@ static void test_operations(void **state)
     run_cases(300, 41000, every_operation);
 }
 
-/// Makes the outputs of the running instruction set. more: allocates an array.
+/// Makes the outputs of the running instruction set. `more` allocates an array.
 static void make_outputs(glint_program_args *args, uint32_t outputs, uint32_t n, uint32_t groups,
                          void *(*more)(const char *name, array_kind kind, uint32_t count))
 {
@@ -89,7 +89,7 @@ static void make_outputs(glint_program_args *args, uint32_t outputs, uint32_t n,
         args->plane[k] = more("plane", KIND_FLOAT, n);
         args->total[k] = more("total", KIND_DOUBLE, n);
         for (uint32_t i = 0; i < n; i++)
-            args->total[k][i] = 0.125 * i; // an arbitrary earlier total
+            args->total[k][i] = 0.125 * i; // the total starts at an arbitrary value
     }
     args->odd = more("odd", KIND_U16, groups);
 }
@@ -99,8 +99,8 @@ static void *plain_output(const char *name, array_kind kind, uint32_t count)
     return new_array(gotten, &gotten_count, name, kind, count);
 }
 
-/// A program that selects between numbers by a parity, with only planes as outputs: often a checker, for which there
-/// is a special kernel.
+/// A program that selects between numbers by a parity, with only planes as outputs: often a checkerboard, which has a
+/// special kernel.
 static void checker_case(int precision, bool odd)
 {
     (void)precision;
@@ -148,7 +148,8 @@ static void test_checkers(void **state)
     run_cases(CASES, 48000, checker_case);
 }
 
-/// Factors of outputs, and the sums that they go to. Infinities and NaN meet some factors of 0.
+/// Chooses the factors of the outputs, and the sums to which the outputs are added. Some factors of 0 multiply
+/// infinities and NaN.
 static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_sums *out)
 {
     *out = (glint_program_sums) { .by = { NULL } };
@@ -161,13 +162,14 @@ static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_su
     }
 }
 
-/// Runs the sums on the current instruction set. Lanes that are not wanted are cleared, as they may hold anything.
+/// Runs the sums on the current instruction set. Clears the lanes that are not requested, because they may hold
+/// anything.
 static void run_sums(glint_program_args *args, glint_program_sums *sums, uint32_t count, uint32_t n)
 {
     for (uint32_t k = 0; k < 3 * count; k++) {
         double *sum = sums[k / 3].sum[k % 3] = output("sum", KIND_DOUBLE, n);
         for (uint32_t i = 0; i < n; i++)
-            sum[i] = 0.25 * i; // an arbitrary earlier total
+            sum[i] = 0.25 * i; // the sum starts at an arbitrary value
     }
     args->sums = sums;
     args->sums_count = count;
@@ -178,7 +180,7 @@ static void run_sums(glint_program_args *args, glint_program_sums *sums, uint32_
                 sums[k / 3].sum[k % 3][i] = 0;
 }
 
-/// A program with as many outputs as allowed, several of them identical. Only sums are stored.
+/// Tests a program with as many outputs as allowed, several of them identical. Only sums are stored.
 static void random_gradient(int precision, bool odd)
 {
     (void)precision;
@@ -203,7 +205,7 @@ static void random_gradient(int precision, bool odd)
     glint_program_release(program);
 }
 
-/// A program whose outputs are added only where they are finite.
+/// Tests a program whose outputs are added only where they are finite.
 static void random_slopes(int precision, bool odd)
 {
     (void)precision;
@@ -246,7 +248,7 @@ static void test_gradients(void **state)
     run_cases(CASES / 10, 48000, random_slopes);
 }
 
-/// Outputs stored as values, as reflectances and as totals of these, in groups at any position.
+/// Tests outputs stored as values, as reflectances and as totals of reflectances, in groups at any position.
 static void random_program(int precision, bool odd)
 {
     (void)precision;
@@ -274,7 +276,7 @@ static void random_program(int precision, bool odd)
             compare_outputs("program");
             continue;
         }
-        // reference for the comparison
+        // the reference runs the plain program, for the comparison
         make_outputs(&args, program->code.output_count, places * GLINT_GROUP, groups, plain_output);
         args.code = &plain->code;
         args.rows = plain_rows;
@@ -292,8 +294,8 @@ static void test_random_programs(void **state)
     run_cases(CASES, 42000, random_program);
 }
 
-/// Code in which a few bytes come from another program: the check must accept only code that can run, and accepted
-/// code is run.
+/// Tests code in which a few bytes come from another program. The check must accept only code that can run, and the
+/// test runs the accepted code.
 static void damaged_program(int precision, bool odd)
 {
     (void)precision;
@@ -336,7 +338,7 @@ static void test_damaged_programs(void **state)
     assert_true(damaged[0] * case_step() > CASES / 4 && damaged[1] * case_step() > CASES / 10);
 }
 
-/// The axes of a camera's rays, of any size.
+/// Makes the axes of a camera's rays, of any size.
 static glint_camera_args any_camera(bool odd)
 {
     glint_camera_args camera = { .groups_across = 1 + below(4) };
@@ -352,14 +354,14 @@ static glint_camera_args any_camera(bool odd)
     return camera;
 }
 
-/// Vectors of any length, between points, along directions or back along a camera's rays. Results are in separate
-/// rows or overwrite the input.
+/// Tests vectors of any length: between points, along directions or back along a camera's rays. The results go to
+/// separate rows or overwrite the input.
 static void unit_case(int precision, bool odd)
 {
     (void)precision;
     const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP;
     const bool one_place = one_in(2), from = one_in(2), in_place = one_in(2), back = one_in(3);
-    const bool hard_length = one_in(4); // the last bits are ones, where a reciprocal is hardest to round
+    const bool hard_length = one_in(4); // a length whose last bits are ones, where a reciprocal is hardest to round
     const glint_camera_args camera = any_camera(odd);
     uint32_t *places = input(KIND_U32, groups);
     for (uint32_t g = 0; g < groups; g++)
@@ -406,7 +408,7 @@ static void test_unit(void **state)
     run_cases(CASES, 46000, unit_case);
 }
 
-/// Some groups of a tile, each once.
+/// Tests a choice of some groups of a tile, each group once.
 static void choose_case(int precision, bool odd)
 {
     (void)precision;

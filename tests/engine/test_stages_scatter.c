@@ -38,7 +38,7 @@ static void scatter_case(int precision, bool odd)
         for (int k = 0; k < 3; k++)
             args.direction[k] = output("direction", real_kind(precision), n);
         geometry(precision)->scatter(&args);
-        for (uint32_t i = 0; i < n; i++) // other lanes may hold anything
+        for (uint32_t i = 0; i < n; i++) // the other lanes may hold anything
             for (int k = 0; k < 3 && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
                 put(args.direction[k], precision, i, 0);
         compare_outputs("scatter");
@@ -87,7 +87,7 @@ static void test_sky(void **state)
     run_cases(CASES, 20000, sky_case);
 }
 
-/// One direction around `n`, from point k of a seed's sequence.
+/// Computes one direction around `n`, from point k of a seed's sequence.
 static void direction_of(const double n[3], uint32_t k, uint64_t seed, double out[3])
 {
     static ALIGNED double normal[3][GLINT_GROUP], direction[3][GLINT_GROUP];
@@ -139,13 +139,13 @@ static void test_closed_forms(void **state)
                 assert_true(fabs(sqrt(dot(d[j], d[j])) - 1) < 2e-9);
                 assert_true(fabs(dot(d[j], n) - sqrt(1 - square[j][0])) < 1e-14);
             }
-            const double cosine = (dot(d[0], d[1]) - up) / across; // of the azimuth between both directions
+            const double cosine = (dot(d[0], d[1]) - up) / across; // cosine of the azimuth between both directions
             assert_true(across < 1e-3 || fabs(cosine - cos(turn)) < 1e-8 / across);
         }
     }
 }
 
-/// Means over the hemisphere: of 1, of the direction, and of its squares.
+/// Tests means over the hemisphere: the mean of 1, of the direction, and of the direction's squares.
 static void test_means(void **state)
 {
     (void)state;

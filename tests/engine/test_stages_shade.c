@@ -14,7 +14,7 @@ static void random_color(double color[3])
         color[c] = grey >= 0 ? grey : one_in(6) ? 0 : one_in(10) ? power_of_ten(-40, 40) : between(0, 2);
 }
 
-/// The results of light and occlude: values only in groups that were lit, before shadows.
+/// Makes the results of light and occlude: values only in groups that the light reached, before shadows.
 static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uint32_t groups)
 {
     uint32_t n = groups * GLINT_GROUP;
@@ -42,7 +42,7 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
     light->sine2 = sine2;
     light->schlick = schlick;
     light->summed = false;
-    light->highlight = attenuation; // arbitrary values
+    light->highlight = attenuation; // arbitrary values, which must not matter
 }
 
 static void make_materials(glint_shade_material *material, uint32_t count)
@@ -60,7 +60,8 @@ static void make_materials(glint_shade_material *material, uint32_t count)
     }
 }
 
-/// Makes planes in half of the cases: materials take some values from planes, or all light from a shader's planes.
+/// Makes planes in half of the cases: materials take some parameters from planes, or all light from a shader's
+/// planes.
 static const glint_shade_planes *make_planes(glint_shade_material *material, uint32_t count, uint32_t n,
                                              glint_shade_planes *planes)
 {
@@ -86,7 +87,7 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
         planes->ambient[c] = ambient;
         planes->specular[c] = specular;
         planes->ambient_light[c] = level && c > 0 ? planes->ambient_light[0] : between(0, 2);
-        planes->shaded[0][c] = shaded ? specular : NULL; // arbitrary values
+        planes->shaded[0][c] = shaded ? specular : NULL; // arbitrary values, which must not matter
         planes->shaded[1][c] = shaded ? ambient : NULL;
     }
     for (uint32_t i = 0; i < n; i++) {
@@ -115,7 +116,7 @@ static void make_shade_outputs(glint_shade_args *args, const double *before, uin
         args->beauty[c] = before ? NULL : output("beauty", KIND_FLOAT, n);
 }
 
-/// The lights of a sample. sums: some arrive already summed.
+/// Makes the lights of a sample. If `sums`, some of the lights arrive already summed.
 static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights, uint32_t count, bool sums)
 {
     args->lights = lights;
@@ -124,7 +125,7 @@ static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights,
         make_shade_light(&lights[k], args->hits, args->group_count);
         lights[k].summed = sums && one_in(2);
     }
-    for (uint32_t k = 0; k < count; k++) { // samples of one light share its colours
+    for (uint32_t k = 0; k < count; k++) { // all samples of one light have the same colours
         lights[k].joined = k > 0 && !lights[k - 1].summed && !lights[k].summed && one_in(2);
         if (!lights[k].joined)
             continue;
@@ -133,7 +134,7 @@ static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights,
     }
 }
 
-/// The materials of a sample: several, or one in most groups, which may be known in advance.
+/// Makes the materials of a sample: several materials, or one material in most groups, which may be known in advance.
 static void make_shade_hits(glint_shade_args *args, uint32_t material_count)
 {
     static const uint32_t only = 0;
@@ -277,11 +278,12 @@ static double ulps(float got, long double want)
     return fabs((double)(((long double)got - want) / ldexpl(1, ilogbl(want) - 23)));
 }
 
-/// Worst error in float ulps, as a sum of possible errors: the last sum 0.5, the product before it 0.25, its factor
-/// 0.25, the terms before that 0.1, and the polynomial's 2e-8 at most 0.34.
+/// Largest possible error in float ulps, a sum of these errors: 0.5 from the last sum, 0.25 from the product before
+/// that sum, 0.25 from a factor of the product, 0.1 from the earlier terms, and at most 0.34 from the polynomial's
+/// own error of 2e-8.
 #define MAX_ULP_EXP2 1.5
 
-/// exp2 through shade: white light on a white material of shininess 1, log2_specular = y.
+/// Computes exp2 through shade: white light on a white material of shininess 1, with log2_specular = y.
 static double exp2_error(const float y[GLINT_TILE_SAMPLES])
 {
     static ALIGNED uint16_t all[GLINT_TILE_GROUPS];

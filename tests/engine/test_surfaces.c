@@ -100,7 +100,7 @@ static void make_soup(soup *s, size_t triangles)
     }
 }
 
-/// A closed box of n x n quads a side. `roundness` pushes its vertices towards a sphere.
+/// Makes a closed box of n x n quads per side. `roundness` pushes its vertices towards a sphere.
 static void make_box(soup *s, uint32_t n, double half, double roundness, double m[3][3])
 {
     memset(s, 0, sizeof *s);
@@ -133,9 +133,9 @@ static void make_box(soup *s, uint32_t n, double half, double roundness, double 
                 }
 }
 
-#define PARALLEL 1234 ///< as at[2]: selects an orthographic camera
+#define PARALLEL 1234 ///< this value of at[2] selects an orthographic camera
 
-static bool soft_light; ///< for the next scene
+static bool soft_light; ///< whether the next scene has a soft light
 
 static glint_scene *new_scene(const double eye[3], const double at[3], double fov, const double light[3], bool shadows)
 {
@@ -146,7 +146,7 @@ static glint_scene *new_scene(const double eye[3], const double at[3], double fo
     memcpy(c.eye, eye, sizeof c.eye);
     memcpy(c.at, at, sizeof c.at);
     c.fov_y_rad = fov;
-    if (at[2] == PARALLEL) { // along the z axis; with 129 pixels across, every eighth ray is at an integer
+    if (at[2] == PARALLEL) { // looks along z; with 129 pixels across, every eighth ray is at an integer
         c.projection = GLINT_ORTHOGRAPHIC;
         c.has_direction = true;
         c.direction[2] = -1;
@@ -212,7 +212,7 @@ static int differing(const glint_image *a, const glint_image *b)
 
 // ---- Identical on every instruction set ----
 
-/// A random invertible map: rotation, stretch, reflection and translation.
+/// Makes a random invertible map: rotation, stretch, reflection and translation.
 static glint_transform random_map(double move)
 {
     double a[3][3], b[3][3];
@@ -230,7 +230,7 @@ static glint_transform random_map(double move)
     return out;
 }
 
-/// capped: certainly closed.
+/// Makes a random solid. A `capped` solid is certainly closed.
 static glint_shape *random_solid(int kind, bool capped)
 {
     glint_shape *shape;
@@ -255,7 +255,7 @@ static glint_shape *random_solid(int kind, bool capped)
     return shape;
 }
 
-/// Solids and spheres under random maps, some of them twice.
+/// Makes a group of solids and spheres under random maps; some occur twice.
 static glint_shape *random_group(uint32_t count)
 {
     static const int kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
@@ -358,7 +358,7 @@ static void no_cracks(void **unused)
     }
 }
 
-/// A camera in a closed box, with corners and edges on its pixels' rays: no light leaks in.
+/// Renders from inside a closed box, with corners and edges on the pixels' rays: no light leaks in.
 static void no_light_by_an_edge(void **unused)
 {
     static soup s;
@@ -393,8 +393,8 @@ static void no_light_by_an_edge(void **unused)
     }
 }
 
-/// A tessellated floor at any orientation, under a light at any height: the picture is identical with and without
-/// shadows.
+/// Renders a tessellated floor at any orientation, under a light at any height: the picture is identical with and
+/// without shadows.
 static void no_acne(void **unused)
 {
     static soup s;
@@ -406,7 +406,7 @@ static void no_acne(void **unused)
         memset(&s, 0, sizeof s);
         random_turn(m);
         const bool aligned = seed % 2;
-        if (aligned) { // edges on the pixels' rays, and a slope that is rounded at every vertex
+        if (aligned) { // puts edges on the pixels' rays, and uses a slope that is rounded at every vertex
             offset = 0;
             memcpy(m, (const double[3][3]) { { 1, 0, between(-1, 1) }, { 0, 1, between(-1, 1) }, { 0, 0, 1 } },
                    sizeof m);
@@ -450,7 +450,7 @@ static void quad_cross(const quad a[3], const quad b[3], quad out[3])
         out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
 }
 
-/// Computes t, the weights of corners 1 and 2, and the normal (not unit).
+/// Computes t, the weights of corners 1 and 2, and the normal, which is not a unit vector.
 static void triangle_truth(const soup *s, const double o[3], const double d[3], quad *t, quad w[2], quad n[3])
 {
     quad e[3], f[3], g[3], q[3], p[3];
@@ -464,7 +464,7 @@ static void triangle_truth(const soup *s, const double o[3], const double d[3], 
     const quad down = quad_dot(n, p);
     *t = -quad_dot(n, e) / down;
     for (int c = 0; c < 3; c++)
-        e[c] += *t * p[c]; // the point, relative to corner 0
+        e[c] += *t * p[c]; // the hit point, relative to corner 0
     quad_cross(e, g, q);
     w[0] = quad_dot(q, n) / quad_dot(n, n);
     quad_cross(f, e, q);
@@ -500,7 +500,8 @@ static void triangles_against_oracle(void **unused)
         for (int c = 0; c < 3; c++)
             along += (double)n[c] * d[c];
         const double sine = fabs(along) / (length * sqrt(dot(d, d)));
-        // Error from rounding the corners as seen from the origin to 53 bits, divided by the incidence angle.
+        // The error from rounding the corners, as seen from the origin, to 53 bits, divided by the sine of the
+        // incidence angle.
         double size = 0, far = 0;
         for (int i = 0; i < 9; i++) {
             size = fmax(size, fabs(s.vertices[i / 3][i % 3] - s.vertices[0][i % 3]));
@@ -516,7 +517,7 @@ static void triangles_against_oracle(void **unused)
         if (!hit || least < -tolerance)
             continue;
         hits++;
-        // t belongs to a point of the triangle, within the error of its weights
+        // t belongs to a point of the triangle, within the error of the point's weights
         assert_true(fabs(got.t - (double)t) <= (8 * DBL_EPSILON + tolerance * size / far) * (double)t);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(got.normal[c] - (double)(n[c] / length)) <= 16 * DBL_EPSILON / thin);
@@ -524,8 +525,8 @@ static void triangles_against_oracle(void **unused)
     assert_true(hits > 5000);
 }
 
-/// How far a point is outside of its shape, in units of the unit shape, and which bound is exceeded. m: the unit
-/// shape's map.
+/// Returns how far a point is outside its shape, in units of the unit shape. *bound gets the bound that is exceeded.
+/// m is the unit shape's map.
 static double outside(const glint_shape_desc *d, quad m[3][4], const quad p[3], int *bound)
 {
     const glint_shape_kind kind = d->kind;
@@ -553,7 +554,7 @@ static double outside(const glint_shape_desc *d, quad m[3][4], const quad p[3], 
     return by[*bound];
 }
 
-/// The map from the unit shape, as the description defines it.
+/// Computes the map from the unit shape, as the description defines it.
 static void unit_map(const glint_shape_desc *d, quad m[3][4])
 {
     quad unit[3][4] = { { 0 } };
@@ -635,7 +636,8 @@ static void solids_against_oracle(void **unused)
                 p[c] = o[c] + (quad)got.t * dir[c];
             if (fabs(outside(&d, m, p, &bound)) > 1e-12)
                 fail_msg("case %d: %g off the surface", n, outside(&d, m, p, &bound));
-            // A step along the normal leads outside; steps across it stay on the surface to first order.
+            // A step along the normal leads outside. Steps perpendicular to the normal stay on the surface to first
+            // order.
             for (int axis = 0; axis < 3; axis++) {
                 double slope[3];
                 for (int c = 0; c < 3; c++) {
@@ -671,7 +673,7 @@ static void groups_hold_together(void **unused)
     assert_int_equal(glint_group_add(a, a, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_group_add(a, b, &error), GLINT_ERR_INVALID);
     assert_string_equal(error.message, "group: already in the group");
-    // Two paths up at every level: exponentially many paths, and still an immediate answer.
+    // Two paths lead up at every level, so the number of paths is exponential, and the answer is still immediate.
     assert_int_equal(glint_shape_create(&d, &chain, NULL), GLINT_OK);
     for (int i = 0; i < 70; i++) {
         glint_shape *outer, *left, *right;
@@ -681,7 +683,7 @@ static void groups_hold_together(void **unused)
         const bool fits =
             glint_group_add(left, chain, NULL) == GLINT_OK && glint_group_add(right, chain, NULL) == GLINT_OK &&
             glint_group_add(outer, left, NULL) == GLINT_OK && glint_group_add(outer, right, NULL) == GLINT_OK;
-        assert_int_equal(fits, 2 * i + 2 <= GLINT_GROUP_DEPTH); // only chains within the depth limit fit
+        assert_int_equal(fits, 2 * i + 2 <= GLINT_GROUP_DEPTH); // only chains within the depth limit are accepted
         glint_shape_release(left);
         glint_shape_release(right);
         glint_shape_release(chain);

@@ -14,7 +14,7 @@
 #include "tests/engine/cases/random.h"
 
 static glint_error error;
-static char path[64]; ///< unique to this process
+static char path[64]; ///< path of a file that is unique to this process
 
 static glint_texture *load(glint_wrap wrap, glint_filter filter, bool linear)
 {
@@ -29,7 +29,7 @@ static glint_texture *load(glint_wrap wrap, glint_filter filter, bool linear)
     return texture;
 }
 
-/// Samples a texture with the frame's kernel.
+/// Samples a texture with the kernel that frames use.
 static void texel(const glint_texture *texture, double u, double v, double footprint, double out[4])
 {
     glint_builder *b;
@@ -57,7 +57,7 @@ static void expect(const glint_texture *texture, double u, double v, double red,
             fail_msg("channel %d at %g, %g: %.9g, want %.9g", c, u, v, got[c], want[c]);
 }
 
-/// 2 x 2: red, green above blue, partly transparent grey.
+/// Writes a picture of 2 x 2 pixels: red, green above blue, partly transparent grey.
 static void write_four(void)
 {
     static const uint8_t four[] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 128, 128, 128, 51 };
@@ -98,7 +98,7 @@ static void test_codes(void **state)
     write_four();
     glint_texture *t = load(GLINT_WRAP_REPEAT, GLINT_FILTER_BILINEAR, false);
     assert_true(glint_texture_width(t) == 2 && glint_texture_height(t) == 2);
-    expect(t, 0.25, 0.75, 1, 0, 0, 1); // v points up
+    expect(t, 0.25, 0.75, 1, 0, 0, 1); // in the texture, v points up
     expect(t, 0.75, 0.75, 0, 1, 0, 1);
     expect(t, 0.25, 0.25, 0, 0, 1, 1);
     expect(t, 0.75, 0.25, gray, gray, gray, 0.2);
@@ -107,7 +107,7 @@ static void test_codes(void **state)
     expect(t, 0.75, 0.25, 128.0 / 255, 128.0 / 255, 128.0 / 255, 0.2);
     glint_texture_release(t);
     static const uint16_t wide[] = { 1000, 40000 };
-    write_png(path, 2, 1, PNG_COLOR_TYPE_GRAY, 16, 1.0, wide); // with a gamma chunk of 1: linear
+    write_png(path, 2, 1, PNG_COLOR_TYPE_GRAY, 16, 1.0, wide); // a gamma chunk of 1 means linear pixel values
     t = load(GLINT_WRAP_CLAMP, GLINT_FILTER_BILINEAR, false);
     expect(t, 0.25, 0.5, 1000 / 65535.0, 1000 / 65535.0, 1000 / 65535.0, 1);
     expect(t, 0.75, 0.5, 40000 / 65535.0, 40000 / 65535.0, 40000 / 65535.0, 1);
@@ -126,7 +126,7 @@ static void test_wrapping(void **state)
     glint_texture *clamp = load(GLINT_WRAP_CLAMP, GLINT_FILTER_BILINEAR, false);
     glint_texture *nearest = load(GLINT_WRAP_REPEAT, GLINT_FILTER_NEAREST, false);
     expect(repeat, 3.25, -4.25, 1, 0, 0, 1);
-    expect(repeat, 0, 0.75, 0.5, 0.5, 0, 1); // between green on the left and red on the right
+    expect(repeat, 0, 0.75, 0.5, 0.5, 0, 1); // a mean of green on the left and red on the right
     expect(repeat, 1, 0.75, 0.5, 0.5, 0, 1);
     expect(repeat, 0.5, 0.75, 0.5, 0.5, 0, 1);
     expect(repeat, 0.375, 0.75, 0.75, 0.25, 0, 1);
@@ -140,15 +140,15 @@ static void test_wrapping(void **state)
     expect(nearest, 0.51, 0.51, 0, 1, 0, 1);
     expect(nearest, -0.51, 1.49, 0, 0, 1, 1);
     glint_texture *around = load(GLINT_WRAP_AROUND, GLINT_FILTER_BILINEAR, false);
-    expect(around, 1, 0.75, 0.5, 0.5, 0, 1); // repeats horizontally
-    expect(around, -2.75, 1, 1, 0, 0, 1); // clamps vertically
+    expect(around, 1, 0.75, 0.5, 0.5, 0, 1); // the texture repeats horizontally
+    expect(around, -2.75, 1, 1, 0, 0, 1); // the texture is clamped vertically
     expect(around, 0.25, -0.2, 0, 0, 1, 1);
     glint_texture_release(around);
     around = load(GLINT_WRAP_AROUND, GLINT_FILTER_NEAREST, false);
     expect(around, 1.3, 1.7, 1, 0, 0, 1);
     glint_texture_release(around);
     double any[4];
-    texel(repeat, INFINITY, NAN, NAN, any); // some texel of the picture
+    texel(repeat, INFINITY, NAN, NAN, any); // the result is some texel of the picture
     assert_true(any[3] >= 0.2 && any[3] <= 1);
     glint_texture_release(repeat);
     glint_texture_release(clamp);
@@ -173,7 +173,7 @@ static void test_footprints(void **state)
     texel(t, 10.0 / 64, 1 - 5.0 / 16, sqrt(8) / 64, between_);
     assert_true(high[0] > low[0] && fabs(between_[0] - (high[0] + low[0]) / 2) < 1e-12);
     double mean = 0;
-    for (int i = 0; i < 1024; i++) { // at the texel centres of a level, their mean
+    for (int i = 0; i < 1024; i++) { // the samples at the centres of a level's texels have the texture's mean
         texel(t, (i % 64 + 0.5) / 64, (i / 64 + 0.5) / 16, 4.0 / 64, all);
         mean += all[0] / 1024;
     }
@@ -280,8 +280,8 @@ static void test_keys(void **state)
     glint_program_release(p);
 }
 
-/// The same texels with another wrap mode: the texture reads like one loaded that way, has its own key, and outlives
-/// the first.
+/// The same texels with another wrap mode: the new texture reads like one loaded with that mode, has its own key, and
+/// outlives the first texture.
 static void test_rewrap(void **state)
 {
     (void)state;

@@ -24,7 +24,7 @@ static void place(double out[3], double size)
         out[c] = uniform(-size, size);
 }
 
-/// A random point in a ball.
+/// Chooses a random point in a ball.
 static void within(double out[3], const double center[3], double radius)
 {
     double off[3];
@@ -49,7 +49,7 @@ static bool meets(const double from[3], const glint_tint_light *light, const dou
 }
 
 typedef struct counts {
-    long met, told; ///< lanes with a ray that hits a ball; lanes not classified as clear
+    long met, told; ///< number of lanes with a ray that hits a ball, and of lanes not classified as clear
 } counts;
 
 static counts try(const glint_tints *tints, const glint_tint_light *light, double spread)
@@ -86,7 +86,8 @@ static counts try(const glint_tints *tints, const glint_tint_light *light, doubl
     return out;
 }
 
-/// All kinds of lights, points close together and far apart, balls of all sizes, some around points and lights.
+/// Tests all kinds of lights, points close together and far apart, and balls of all sizes, some around points and
+/// lights.
 static void test_rays(void **unused)
 {
     (void)unused;

@@ -18,7 +18,7 @@
 #define ALIGNED _Alignas(64)
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 
-enum { ENTRIES = 0x3f80 - GLINT_TONE_FIRST + 1 }; // up to 1
+enum { ENTRIES = 0x3f80 - GLINT_TONE_FIRST + 1 }; // entries for values up to 1
 enum { CASES = 600, TONE_BYTES = 3 * GLINT_TILE_SAMPLES, STRIDE_MOST = 3 * GLINT_TILE_WIDTH + 10 };
 
 // ---- Random numbers ----
@@ -46,7 +46,7 @@ static bool runs_here(const glint_stages *stages) { return stages != &glint_stag
 
 // ---- Cases ----
 
-/// Pixel values with a threshold anywhere in a bucket, at its ends, or nowhere.
+/// Makes a table of pixel values with a threshold anywhere in a bucket, at its ends, or nowhere.
 static void make_tone_table(uint32_t table[ENTRIES])
 {
     uint32_t code = 0;
@@ -67,7 +67,7 @@ static float tone_value(const uint32_t *table)
     return one_in(8) ? odd_number() : one_in(3) ? (float)between(-0.1, 1.2) : x;
 }
 
-/// 0 .. 3: clamp, 4 .. 7: reinhard, 8 .. 11: filmic.
+/// Returns a table: 0 .. 3 clamp, 4 .. 7 reinhard, 8 .. 11 filmic.
 static const glint_tone_table *tone_of(int index)
 {
     glint_tone_desc desc = { (glint_tone_curve)(index / 4), index & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
@@ -117,7 +117,7 @@ static void make_case(tone_case *c)
 
 static void run_case(const tone_case *c, const glint_stages *stages, tone_result *result)
 {
-    memset(result, 0xa5, sizeof *result); // bytes that no active lane covers must stay unchanged
+    memset(result, 0xa5, sizeof *result); // the bytes of inactive lanes must stay unchanged
     result->clipped = 3;
     result->nonfinite = 4;
     glint_tone_args args = c->args;
@@ -161,7 +161,7 @@ static void test_tone_reference(void **state)
         c.args.gain = 1;
         run_case(&c, &glint_stages_ref, &got);
         for (size_t i = 0; i < sizeof got.codes; i++) {
-            // wraps to a large value before the first row
+            // before the first row, the index wraps to a large value
             size_t at = i - STRIDE_MOST, y = at / c.args.stride, x = at % c.args.stride / 3;
             size_t group = y / 4 * c.args.groups_across + x / 4, lane = y % 4 * 4 + x % 4;
             bool lit = x < 4 * c.args.groups_across && group < c.args.group_count && c.active[group] >> lane & 1;
@@ -175,7 +175,7 @@ static void test_tone_reference(void **state)
 
 // ---- Every float ----
 
-/// Pixel values of TONE_BYTES floats, in order, starting at the bits `bits` with a step of `step`.
+/// Computes the pixel values of TONE_BYTES floats, in order, from the bits `bits` on with a step of `step`.
 static void tone_floats(const glint_stages *stages, const glint_tone_table *table, uint32_t bits, uint32_t step,
                         uint8_t codes[TONE_BYTES])
 {
@@ -207,7 +207,7 @@ static void test_tone_every_float(void **state)
     (void)state;
     static uint8_t want[TONE_BYTES], got[TONE_BYTES];
     for (int i = 0; i < 5; i++) {
-        const uint32_t step = i == 0 ? 1 : i == 4 ? 40961 : 7; // the last one goes down to the smallest float
+        const uint32_t step = i == 0 ? 1 : i == 4 ? 40961 : 7; // the last table's floats go down to the smallest float
         const uint32_t first = i == 4 ? 0 : GLINT_TONE_FIRST << 16;
         for (uint64_t bits = first; bits <= 0x3f800001u; bits += (uint64_t)step * TONE_BYTES) {
             tone_floats(&glint_stages_ref, tone_of(i), (uint32_t)bits, step, want);
