@@ -3,7 +3,7 @@
 -- without any of these phrases, and a phrase can be right in its context.
 local MOST = 0.02
 
--- A phrase, and what to write instead. %f[%w] is a word's beginning, %f[%W] its end.
+-- Each entry is a phrase and what to write instead. %f[%w] is a word's beginning, %f[%W] its end.
 local PHRASES = {
   { "^Of [%w-]+", "begin with the subject" },
   { "[.:;] Of [a-z]+", "begin with the subject" },

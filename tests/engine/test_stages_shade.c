@@ -42,7 +42,7 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
     light->sine2 = sine2;
     light->schlick = schlick;
     light->summed = false;
-    light->highlight = attenuation; // arbitrary values, which must not matter
+    light->highlight = attenuation; // any values will do
 }
 
 static void make_materials(glint_shade_material *material, uint32_t count)
@@ -87,7 +87,7 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
         planes->ambient[c] = ambient;
         planes->specular[c] = specular;
         planes->ambient_light[c] = level && c > 0 ? planes->ambient_light[0] : between(0, 2);
-        planes->shaded[0][c] = shaded ? specular : NULL; // arbitrary values, which must not matter
+        planes->shaded[0][c] = shaded ? specular : NULL; // any values will do
         planes->shaded[1][c] = shaded ? ambient : NULL;
     }
     for (uint32_t i = 0; i < n; i++) {

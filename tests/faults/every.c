@@ -25,7 +25,7 @@ typedef struct bytes {
     size_t size;
 } bytes;
 
-typedef struct made { // by one run
+typedef struct made { // the files and the output that one run made
     int status;
     long count;
     bytes out, err;
@@ -78,7 +78,7 @@ static void release(made *m)
     }
 }
 
-// Empties `path` and its subfolders. Reads each file into `m` first, unless that is NULL. Complete frames of a failed
+// Empties `path` and its subfolders. Reads each file into `m` first, unless `m` is NULL. Complete frames of a failed
 // film may stay in NAME.frames, so that the next run can continue.
 static void empty(const char *path, made *m)
 {

@@ -1,7 +1,7 @@
-// A library to preload. It counts a process's allocations or writes, and makes one of those calls fail, or all calls
-// from that one on. From the environment: FAULT_KIND "alloc" or "write", FAULT_AT the number of the call, 0 for none,
-// FAULT_ON to let later calls fail too, FAULT_FD the descriptor to write the count to at the end. Only glibc exports
-// the functions behind malloc.
+// A library to preload. It counts a process's allocations or writes, and makes one of these calls fail, or that call
+// and all later ones. From the environment: FAULT_KIND "alloc" or "write", FAULT_AT the number of the call, 0 for
+// none, FAULT_ON to let later calls fail too, FAULT_FD the descriptor to write the count to at the end. Only glibc
+// exports the functions behind malloc.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -30,7 +30,7 @@ __attribute__((constructor)) static void read_environment(void)
     at = number ? atol(number) : 0;
     goes_on = getenv("FAULT_ON") != NULL;
     count_fd = fd ? atoi(fd) : -1;
-    alloc_count = 0; // ignores allocations of the loader
+    alloc_count = 0; // does not count the loader's allocations
 }
 
 __attribute__((destructor)) static void tell_count(void)

@@ -1,5 +1,5 @@
--- Bytes as a data file; the first selects the reader. The reader returns data, or an error that names file and line.
--- An error of Lua itself (a nil indexed, a nil added to) is a finding.
+-- Reads the input as a data file; its first byte selects the reader. The reader returns data, or an error that names
+-- file and line. An error of Lua itself (a nil indexed, a nil added to) is a finding.
 package.path = "scripts/lib/?.lua;" .. package.path
 local path = ("/dev/shm/glint-fuzz-data-%d"):format(io.open("/proc/self/stat"):read "n")
 

@@ -21,11 +21,11 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t room, unsigned seed);
-size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t room); ///< provided by libFuzzer
+size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t room); ///< libFuzzer provides this function
 
 /// Writes the bytes to an in-memory file of this process, for readers that take a path. Returns the path.
 const char *fuzz_file(const uint8_t *data, size_t size);
-/// The same with an extension, such as ".ply".
+/// Like fuzz_file, but with an extension, such as ".ply".
 const char *fuzz_file_as(const char *ending, const uint8_t *data, size_t size);
 
 #endif

@@ -1,4 +1,4 @@
-/// Lines as the words of a command line: gives options, or a message of one line.
+/// Reads the lines of the input as the words of a command line. The result is options, or a message of one line.
 #include "bindings/command/cli.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,5 +1,5 @@
-/// Bytes as a mesh file, whose type is detected from the first bytes, or as its material file: gives a mesh, which is
-/// rendered from the front in a small picture, or a message.
+/// Reads the input as a mesh file, whose type is detected from the first bytes, or as the mesh's material file. The
+/// result is a message, or a mesh, which is rendered from the front in a small picture.
 #include "engine/glint.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -33,7 +33,7 @@ static void see(glint_shape *shape)
     glint_camera_release(camera);
 }
 
-/// An .obj file with the bytes as its material file.
+/// Writes an .obj file that has the bytes as its material file.
 static const char *mesh_with(const uint8_t *data, size_t size)
 {
     char text[256];

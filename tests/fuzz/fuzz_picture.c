@@ -1,6 +1,6 @@
-/// Bytes that start like a PNG go to its decoder and its scanner, others to the PFM reader. Data that both PNG
-/// readers accept has one size, and all decoded pixel values are present. A PFM is unchanged after writing and
-/// reading it again.
+/// Bytes that start like a PNG go to the PNG decoder and the PNG scanner, other bytes to the PFM reader. If both PNG
+/// readers accept the data, they report the same size, and all decoded pixel values are present. A PFM is unchanged
+/// after writing and reading it again.
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
 #include "tests/fuzz/fuzz.h"
@@ -59,7 +59,7 @@ static void try_pfm(const uint8_t *data, size_t size)
     const size_t pixels = (size_t)first.width * (size_t)first.height, channels = (size_t)first.channels;
     float *values = malloc((pixels * channels + 1) * sizeof *values), *plane[3];
     FUZZ_CHECK(values, "out of memory");
-    for (size_t i = 0; i < pixels * channels; i++) // values that cannot be written change when written
+    for (size_t i = 0; i < pixels * channels; i++) // values that a file cannot store change when they are written
         values[i % channels * pixels + i / channels] = first.values[i] = isfinite(first.values[i]) ? first.values[i] : 0;
     for (size_t c = 0; c < channels; c++)
         plane[c] = values + c * pixels;
@@ -82,7 +82,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     return 0;
 }
 
-/// Corrects the checksums of a PNG's chunks, or few mutations would pass them.
+/// Corrects the checksums of a PNG's chunks; otherwise few mutations would pass the checks.
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t room, unsigned seed)
 {
     size = LLVMFuzzerMutate(data, size, room);

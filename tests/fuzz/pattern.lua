@@ -1,5 +1,5 @@
--- Bytes as choices: a function, as a pattern and as a shader. The program must give the same bits as plain Lua. Where a
--- material or a background accepts it, a picture is rendered, or refused with a message.
+-- Makes a function from the input, as a pattern and as a shader. The program must give the same bits as plain Lua.
+-- When a material or a background accepts the program, a picture is rendered, or refused with a message.
 local glint = require "glint"
 
 local bytes, at = "", 1

@@ -1,5 +1,5 @@
--- Bytes as choices: objects with fields of every kind and size, edits of them, and small pictures, which are all
--- valid or refused with a message. An error of Lua itself from inside the module is a finding.
+-- Makes choices from the input: objects with fields of every kind and size, edits of the objects, and small pictures.
+-- Each is valid, or refused with a message. An error of Lua itself from inside the module is a finding.
 local glint = require "glint"
 
 local bytes, at = "", 1
@@ -84,7 +84,7 @@ local function refused(message)
   end
 end
 
--- The first values are valid, so that most edited objects stay valid.
+-- The first values of each list are valid, so that most edited objects stay valid.
 local GOOD = {
   sphere = { center = { 0, 0, 0 }, radius = 1 }, plane = { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
   box = { min = { -1, -1, -1 }, max = { 1, 1, 1 } }, disk = { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 },

@@ -5,7 +5,7 @@
 --   order "pre"|"post"; options.pixel, options.specular, options.background (three 8-bit values)
 local witness = {}
 
-local EPSILON = 1e-7 -- of the length of shadow and eye rays
+local EPSILON = 1e-7 -- minimum distance of a hit, as a share of the length of a shadow or eye ray
 
 -- ---- Matrices: rows of 4, the last row is 0 0 0 1 ----
 
@@ -22,7 +22,7 @@ end
 
 local function identity() return { { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } } end
 
--- Gauss-Jordan elimination; nil for a singular matrix.
+-- Inverts a matrix by Gauss-Jordan elimination. Returns nil for a singular matrix.
 local function inverse(m)
   local rows = {}
   for i = 1, 3 do
@@ -100,7 +100,7 @@ local function disk(z, normal, p, d, found)
   if q[1] * q[1] + q[2] * q[2] <= 1 then found(t, normal) end
 end
 
--- x^2 + y^2 = (r0 + slope z)^2 between z = 0 and z = 1.
+-- The round surface x^2 + y^2 = (r0 + slope z)^2 between z = 0 and z = 1.
 local function round(r0, slope)
   return function(p, d, found)
     local r = r0 + slope * p[3]
@@ -120,7 +120,7 @@ local function round(r0, slope)
   end
 end
 
--- A tube around the circle of radius `ring`, by steps along the ray, and bisection where the sign changes.
+-- A tube around the circle of radius `ring`. Takes steps along the ray, and bisects where the sign changes.
 local function torus(tube, ring)
   local function off(q)
     local away = math.sqrt(q[1] * q[1] + q[2] * q[2]) - ring
@@ -146,7 +146,7 @@ local function torus(tube, ring)
   end
 end
 
--- Crossing number in the coordinate plane perpendicular to the normal's largest component.
+-- Tests by the crossing number, in the coordinate plane perpendicular to the normal's largest component.
 local function inside(corners, q, j, k)
   local within, last = false, corners[#corners]
   for _, corner in ipairs(corners) do
@@ -221,7 +221,7 @@ end
 
 -- ---- A picture ----
 
--- The shapes in world space: hits, inverse map, material.
+-- Collects the shapes in world space: hits, inverse map, material.
 local function collect(node, map, order, out)
   map = product(map, order == "pre" and node.pre or node.post)
   local back = inverse(map)
@@ -265,7 +265,7 @@ local function shade(picture, p, d)
   local t, normal, shape = nearest(picture.shapes, p, d)
   if not t then return picture.background end
   local b, material, color = shape.back, shape.material, {}
-  local n = {} -- by the transposed inverse
+  local n = {} -- the normal is mapped by the transposed inverse
   for i = 1, 3 do n[i] = b[1][i] * normal[1] + b[2][i] * normal[2] + b[3][i] * normal[3] end
   n = unit(n)
   local point, v = along(p, d, t), unit { -d[1], -d[2], -d[3] }
@@ -289,7 +289,7 @@ local function shade(picture, p, d)
   return color
 end
 
--- The 8-bit values of a pixel; dx and dy shift its ray by fractions of a pixel.
+-- Returns the 8-bit values of a pixel. dx and dy shift its ray by fractions of a pixel.
 local function codes(picture, x, y, dx, dy)
   local size = math.tan(math.rad(picture.fov) / 2)
   local a = (2 * (x + picture.pixel + dx) / picture.width - 1) * size * picture.width / picture.height

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/// A light of radius r at height h above the floor's point, facing it.
+/// Describes a light of radius r at height h above the floor's point, facing the point.
 static glint_light_desc above(glint_light_kind kind, double h, double r)
 {
     glint_light_desc light = glint_light_desc_default(kind);
@@ -58,8 +58,8 @@ static void no_radius(void)
              rays[0][0] >= rays[1][0] && rays[0][1] >= rays[1][1]);
 }
 
-/// The textbook's pi sin^2 of the half angle, from sin^2 = 1 - cos^2, cos = sqrt(1 - r^2/d^2); or, if `weight`, the
-/// weight 2 pi (1 - cos) of sampling the cone.
+/// The textbook's irradiance pi sin^2 of the half angle, where sin^2 = 1 - cos^2 and cos = sqrt(1 - r^2/d^2); or, if
+/// `weight`, the weight 2 pi (1 - cos) of a sample of the cone.
 #define NAIVE(name, real, root) \
     static double name(bool weight, double r, double d) \
     { \
@@ -118,7 +118,7 @@ static void tiny(void)
     }
 }
 
-/// L11: closed forms, and the error of N samples.
+/// L11: compares with closed forms, and checks the error of N samples.
 static void closed_form(glint_light_kind kind, const char *name, double h, double r, double stated)
 {
     const double want = kind == GLINT_LIGHT_DISK ? oracle_disk(r, h) : oracle_ball(r, h);
@@ -137,7 +137,7 @@ static void closed_form(glint_light_kind kind, const char *name, double h, doubl
             if (n == 16)
                 first[p] = off[p];
             const double rounding =
-                1e-6 * want; // the only error of a ball, whose samples all contribute equally
+                1e-6 * want; // rounding is the only error of a ball, whose samples all contribute equally
             right &= hard_check(off[p] <= fmax(2 * first[p] / sqrt(n / 16.0), rounding),
                                 "%s: error of %d samples %g, of 16 %g", name, n, off[p], first[p]) &
                      hard_check(n < 1024 || off[p] <= fmax(first[p] / 8, rounding),
@@ -156,7 +156,7 @@ static void closed_forms(void)
     closed_form(GLINT_LIGHT_DISK, "disk", 2, 1, 0.6283185307);
     closed_form(GLINT_LIGHT_SPHERE, "ball", 2, 1, 0.7853981634);
     const bool table = hard_table;
-    hard_table = false; // too many for the table
+    hard_table = false; // too many rows for the table
     for (int i = 0; i < 6; i++) {
         const double h = log_uniform(1e-6, 1e6), r = h * uniform(0.1, 0.9);
         closed_form(i % 2 ? GLINT_LIGHT_DISK : GLINT_LIGHT_SPHERE, "random", h, r, 0);
@@ -166,9 +166,9 @@ static void closed_forms(void)
 
 // ---- Noise ----
 
-/// Relative RMS error of 16 samples of a ball's whole surface, half of which is invisible from the point: the
-/// textbook's columns. The ball has radius 1, at a distance `away` and an angle `tilt` (radians) from the floor's
-/// normal.
+/// Returns the relative RMS error of 16 samples of a ball's whole surface, half of which is invisible from the point:
+/// the textbook's columns. The ball has radius 1, at a distance `away` and at an angle `tilt` (radians) from the
+/// floor's normal.
 static double surface_noise(double away, double tilt)
 {
     const double place[2] = { away * sin(tilt), away * cos(tilt) }, want = M_PI / (away * away) * cos(tilt);
@@ -200,7 +200,7 @@ static void check_noise(double away, double degrees, double most)
     bool right = true;
     char what[96];
     light.position[0] = away * sin(tilt);
-    light.radiance = 1e4; // so that no pixel of a distant ball rounds to 0
+    light.radiance = 1e4; // so bright that no pixel of a distant ball rounds to 0
     for (int p = 0; p < 2; p++) {
         double off;
         const double mean = point_lit(&light, NULL, 0, 1e-6, 1e4 * want, (glint_precision)p, &off, NULL) / (1e4 * want);
@@ -213,7 +213,7 @@ static void check_noise(double away, double degrees, double most)
     hard_row("cone", what, &shown, right);
 }
 
-/// For balls entirely above the horizon, sampled by solid angle.
+/// Checks the noise of balls entirely above the horizon, which are sampled by solid angle.
 static void noise(void)
 {
     hard_test("cone", "noise of a ball by radiance");
@@ -230,10 +230,11 @@ static void noise(void)
 // ---- Shadows ----
 
 typedef struct shadow {
-    double light, height, ball, between; ///< radius and height of the light; of the occluder
+    double light, height, ball, between; ///< radius and height of the light; radius and height of the occluder
 } shadow;
 
-/// The share of the light that reaches the floor at x, with 1024 samples: 0 in the umbra, 1 outside the penumbra.
+/// Returns the share of the light that reaches the floor at x, with 1024 samples: 0 in the umbra, 1 outside the
+/// penumbra.
 static double share(const shadow *s, double x, glint_precision precision)
 {
     const hard_sphere ball = { { 0, s->between, 0 }, s->ball };
@@ -243,7 +244,7 @@ static double share(const shadow *s, double x, glint_precision precision)
     return point_lit(&light, &ball, x, 1e-9 * s->height, 0, precision, NULL, NULL) / open;
 }
 
-/// The position where the share first exceeds `level` (0), or reaches it (1).
+/// Returns the x where the share first exceeds `level` if that is 0, or first reaches `level` if that is 1.
 static double edge(const shadow *s, double level, glint_precision precision)
 {
     double low = 0, high = 3 * oracle_shadow(false, s->light, s->height, s->ball, s->between);
@@ -254,8 +255,8 @@ static double edge(const shadow *s, double level, glint_precision precision)
     return level == 0 ? high : low;
 }
 
-/// L12. No sample gets through in the umbra and none is lost outside the penumbra. With so many samples the visible
-/// edges are close to the true ones.
+/// L12. In the umbra all samples are occluded, outside the penumbra none. With so many samples the visible edges of
+/// the shadow are close to the true edges.
 static void check_shadow(const char *what, const shadow *s, double stated_umbra, double stated_penumbra)
 {
     const double umbra = oracle_shadow(true, s->light, s->height, s->ball, s->between),

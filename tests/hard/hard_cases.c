@@ -26,7 +26,7 @@ static answer ask(const hard_ray *ray, const hard_sphere *sphere)
     return out;
 }
 
-/// The same sphere as the only one of a glint.spheres must give the same bits.
+/// Checks that the same sphere, as the only sphere of a glint.spheres, gives the same bits.
 static bool requested_as_spheres(const hard_ray *ray, const hard_sphere *sphere, const answer *one)
 {
     glint_error error;
@@ -50,8 +50,8 @@ static judgement judge_answer(const hard_ray *ray, const hard_sphere *sphere, co
     return judge_sphere(ray, sphere, &want, got->hit, &got->at);
 }
 
-/// Renders one pixel along the ray. Returns whether it hits; *t: the distance in units of |d|, from the float32 depth
-/// pass.
+/// Renders one pixel along the ray. Returns whether it hits; *t gets the distance in units of |d|, from the float32
+/// depth pass.
 static bool framed(const hard_ray *ray, const hard_sphere *sphere, glint_precision precision, double *t)
 {
     float depth[3], id[3];
@@ -108,7 +108,7 @@ static void check_case(const ray_case *k)
         right = fabs(got.at.t - want.t) <= 1e-13 * want.t;
         for (int c = 0; c < 3; c++)
             right = right && fabs(got.at.normal[c] - want.n[c]) <= normal_allowed;
-    } else if (got.hit) { // tangent: the hit must be at the point of contact
+    } else if (got.hit) { // a tangent ray: the hit must be at the point of contact
         right = right && fabs(got.at.t / want.t - 1) < 1e-7;
     }
     hard_check(right, "truth %s t %.17g, engine %s t %.17g", want.hit ? "hit" : "miss", want.t,
@@ -211,8 +211,8 @@ static void rounded_variants(const ray_case *k)
 
 // ---- Several objects ----
 
-/// S28, S38: of two concentric spheres the outer one is hit, in any order of definition; of two equal spheres, the
-/// first one.
+/// S28, S38: a ray hits the outer of two concentric spheres, in any order of definition, and the first of two equal
+/// spheres.
 static void check_pairs(void)
 {
     hard_test("S28, S38", "concentric and equal spheres");
@@ -256,7 +256,7 @@ static void check_refused(void)
             glint_hit got;
             double o[3] = { 0, 0, 5 }, d[3] = { 0, 0, 0 };
             o[c] = bad[i];
-            d[c] = i == 1 ? 0 : bad[i]; // a direction with -1 is valid
+            d[c] = i == 1 ? 0 : bad[i]; // a direction with a component -1 is valid
             if (i >= 2)
                 hard_check(glint_scene_cast(scene, o, (double[3]) { 0, 0, -1 }, &hit, &got, &error) ==
                                    GLINT_ERR_INVALID &&
@@ -277,7 +277,7 @@ static void check_refused(void)
     }
 }
 
-/// G1: rays in a plane, parallel to it, and so nearly parallel that the quotient has no meaning.
+/// G1: rays in a plane, rays parallel to the plane, and rays so nearly parallel that the quotient has no meaning.
 static void check_planes(void)
 {
     hard_test("G1", "rays in and along planes");

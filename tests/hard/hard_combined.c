@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#define RAYS_MOST 4000 ///< per row; each ray is a frame
+#define RAYS_MOST 4000 ///< rays per row of the table, at most; each ray is a frame
 
 static glint_shape *made(const glint_shape_desc *d)
 {
@@ -79,7 +79,7 @@ static void map_vector(const glint_transform *m, const double v[3], double w, do
         out[i] = ((m->m[i][0] * v[0] + m->m[i][1] * v[1]) + m->m[i][2] * v[2]) + m->m[i][3] * w;
 }
 
-/// Transforms a ray from a shape's own space to the world. Its direction is a unit vector in the shape's space.
+/// Transforms a ray from a shape's own space to the world. The ray's direction is a unit vector in the shape's space.
 static hard_ray ray_in_world(const glint_transform *map, const double from[3], const double to[3])
 {
     hard_ray ray;
@@ -146,7 +146,7 @@ static uint64_t rays_of_row(void)
     return rays > RAYS_MOST ? RAYS_MOST : rays;
 }
 
-/// Counts are numbers of rays that hit something that should not be there.
+/// Reports a row of counts, each the number of rays that hit something that should not be there.
 static void report(const char *id, const char *what, uint64_t rays, const double counts[4])
 {
     char text[120];
@@ -246,7 +246,7 @@ static void halves(void)
 COUNT(count_double, double)
 COUNT(count_float, float)
 
-/// From outside through an edge, a corner or the diagonal of a face, towards the centre.
+/// Casts rays from outside towards the centre, through an edge, a corner or the diagonal of a face.
 static void edges_and_corners(void)
 {
     static const block body = { { -1, -1, -1 }, { 1, 1, 1 } };
@@ -258,7 +258,7 @@ static void edges_and_corners(void)
     for (uint64_t i = 0; i < rays_of_row(); i++) {
         double at[3] = { 1, 1, chance(0.3) ? 1 : uniform(-1, 1) }, from[3], way[3];
         if (chance(0.3))
-            at[1] = at[2]; // on the diagonal
+            at[1] = at[2]; // a point on the diagonal
         const double far = uniform(1.5, 6);
         for (int c = 0; c < 3; c++) {
             const int k = (int)((uint64_t)c + i) % 3;
@@ -277,7 +277,7 @@ static void edges_and_corners(void)
     report("K3", "through edges and corners of a box of triangles: missed; books: went in and not out", rays_of_row(), counts);
 }
 
-/// Mesh boxes minus a ball and a flush block, against solid boxes minus the same.
+/// Compares mesh boxes minus a ball and a flush block with solid boxes minus the same shapes.
 static void boxes_of_triangles(void)
 {
     static const block body = { { -1, -1, -1 }, { 1, 1, 1 } }, pit = { { -0.5, -0.3, -0.7 }, { 0.5, 1, 0.7 } };
@@ -313,8 +313,8 @@ static void boxes_of_triangles(void)
 
 // ---- A lens ----
 
-/// Renders a pixel that looks past the edge of a black wall halfway to the focus, with 4,096 samples. The edge is at
-/// a share `edge` of the lens's cross-section there; the rest of the lens sees a white world.
+/// Renders a pixel that looks past the edge of a black wall halfway to the focus, with 4,096 samples. At the wall,
+/// the edge is at a share `edge` of the lens's cross-section; the rest of the lens sees a white world.
 static double seen_past(double edge, glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -363,7 +363,7 @@ static void lens(void)
     hard_test("K5", "a lens");
     for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
         const double s = fmin(fmax(edges[i], -1), 1);
-        // 4096^-3/4, as for an edge across a square
+        // an error of 4096^-3/4, as for an edge across a square
         const double want = (acos(s) - s * sqrt(1 - s * s)) / acos(-1), off = 0x1p-9;
         char what[80];
         uint64_t open = 0, all = 0;

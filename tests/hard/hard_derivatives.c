@@ -7,7 +7,7 @@
 
 #define WIDTH 48
 #define HEIGHT 36
-#define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< to 106 bits
+#define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< exact to 106 bits
 
 /// How sphere and floor are described: directly, as parts of CSG shapes, or under a transform.
 typedef enum dress { BARE, PARTS, TURNED, DRESSES } dress;
@@ -20,8 +20,9 @@ typedef struct world {
     quad scene_ambient[3], background[3];
     quad ball[3], radius[3], point[3], normal[3], eye[3], at[3], up[3], fov[3];
     glint_model model;
-    bool beckmann, normalized, matched, own_terms; ///< own_terms: the light has separate diffuse and specular colours
-    bool shader; ///< a shader that computes the model, times a wave
+    bool beckmann, normalized, matched, own_terms; ///< own_terms: whether the light has separate diffuse and specular
+        ///< colours
+    bool shader; ///< whether a shader computes the model and multiplies the result by a wave
     glint_light_kind kind;
     dress dress;
 } world;
@@ -58,7 +59,7 @@ static const number numbers[] = {
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-/// The direction of the ray through a pixel's centre.
+/// Computes the direction of the ray through a pixel's centre.
 static void ray_of(const world *w, int x, int y, quad d[3])
 {
     quad forward[3], right[3], up[3];
@@ -75,7 +76,7 @@ static void ray_of(const world *w, int x, int y, quad d[3])
     unit(d);
 }
 
-/// The distance to the sphere along a unit direction; negative: a miss.
+/// Returns the distance to the sphere along a unit direction; negative for a miss.
 static quad meet_ball(const world *w, const quad o[3], const quad d[3])
 {
     quad f[3];
@@ -91,7 +92,7 @@ static quad smith_beckmann(quad alpha, quad x)
     return c < (quad)1.6 ? (1 - (quad)1.259 * c + (quad)0.396 * c * c) / ((quad)3.535 * c + (quad)2.181 * c * c) : 0;
 }
 
-/// pi D G / (4 n.v), without the factor F.
+/// Returns pi D G / (4 n.v), without the factor F.
 static quad facets(const world *w, quad nh, quad nl, quad nv)
 {
     const quad alpha = w->roughness[0] * w->roughness[0], aa = alpha * alpha, nh2 = nh * nh;
@@ -123,8 +124,8 @@ static void specular_of(const world *w, const quad n[3], const quad l[3], const 
                  (w->f0[c] + (1 - w->f0[c]) * powf128(1 - dot(v, h), 5));
 }
 
-/// The factor that only shaders apply: depends on the point in the shape's space, the point in the world, and the
-/// light's distance.
+/// Returns the factor that only shaders apply. It depends on the point in the shape's space, the point in the world,
+/// and the light's distance.
 static quad wave(const world *w, const quad p[3], quad distance)
 {
     const quad own = w->dress == TURNED ? p[1] / 2 : p[0], far = w->kind == GLINT_LIGHT_DIRECTIONAL ? 0 : distance;
@@ -141,7 +142,7 @@ static quad cone(const world *w, const quad l[3])
     return c > 0 ? x * x * (3 - 2 * x) * powf128(c, w->exponent[0]) : 0;
 }
 
-/// The light at a point.
+/// Adds the light that reaches a point.
 static void add_light(const world *w, const quad p[3], const quad n[3], const quad v[3], bool on_floor, quad out[3])
 {
     quad l[3], strength = w->intensity[0], specular[3];
@@ -414,7 +415,7 @@ static world random_world(int turn)
     fill(w.ball, -0.3, 0.3);
     fill(w.radius, 1, 1.3);
     fill(w.point, -1.5, -1.3);
-    fill(w.normal, turn % 4 ? -0.1 : 0, turn % 4 ? 0.1 : 0); // axis-aligned normals too
+    fill(w.normal, turn % 4 ? -0.1 : 0, turn % 4 ? 0.1 : 0); // also tests axis-aligned normals
     fill(w.eye, 0.5, 1.5);
     fill(w.at, -0.2, 0.2);
     fill(w.up, -0.1, 0.1);
@@ -422,7 +423,7 @@ static world random_world(int turn)
     w.normal[1] += 1;
     w.up[1] += 1;
     w.eye[2] += 7;
-    for (int c = 0; c < 3; c++) { // rounded as for the engine
+    for (int c = 0; c < 3; c++) { // rounds the numbers as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     }

@@ -10,7 +10,8 @@
 #define NEAR ((quad)1e-18) ///< minimum distance of a hit from the ray's own surface
 
 /// The material of the first ball.
-typedef enum stuff { MIRROR, GLASS, PANE, VARNISH, STUFFS } stuff; ///< pane: glass, no Fresnel; varnish: opaque with it
+typedef enum stuff { MIRROR, GLASS, PANE, VARNISH, STUFFS } stuff; ///< pane: glass without Fresnel reflectance;
+    ///< varnish: an opaque material with it
 
 /// A reflecting or refracting ball and a matt one above a mirroring floor.
 typedef struct world {
@@ -45,7 +46,7 @@ enum { NOTHING, BALL, OTHER, FLOOR };
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-/// Intersects a line with a ball. *t: the two distances. Returns false for a miss.
+/// Intersects a line with a ball. t gets the two distances. Returns false for a miss.
 static bool meet_ball(const quad center[3], quad radius, const quad o[3], const quad d[3], quad t[2])
 {
     const quad f[3] = { o[0] - center[0], o[1] - center[1], o[2] - center[2] };
@@ -75,7 +76,7 @@ static int nearest(const world *w, const quad o[3], const quad d[3], quad *far)
     return found;
 }
 
-/// The light in channel c that reaches a point directly.
+/// Returns the light in channel c that reaches a point directly.
 static quad reach(const world *w, const quad p[3], const quad l[3], quad distance, int c)
 {
     quad t[2], left = 1;
@@ -107,7 +108,7 @@ static quad local_light(const world *w, int what, const quad p[3], const quad n[
 
 static quad trace(const world *w, const quad o[3], const quad d[3], bool inside, int depth, int c);
 
-/// The light that the ball reflects and transmits at p. n faces the ray.
+/// Returns the light that the ball reflects and transmits at p. n faces the ray.
 static quad send_on(const world *w, const quad p[3], const quad n[3], const quad d[3], bool inside, int depth, int c)
 {
     const bool glass = w->stuff == GLASS || w->stuff == PANE, fresnel = w->stuff == GLASS || w->stuff == VARNISH;
@@ -129,7 +130,7 @@ static quad send_on(const world *w, const quad p[3], const quad n[3], const quad
     return light;
 }
 
-/// The light in channel c along a ray from o.
+/// Returns the light in channel c along a ray from o.
 static quad trace(const world *w, const quad o[3], const quad d[3], bool inside, int depth, int c)
 {
     quad far, p[3], n[3] = { w->normal[0], w->normal[1], w->normal[2] }, v[3], up[3], light;
@@ -345,7 +346,7 @@ static world random_world(int turn)
     w.other[2] -= (quad)1.5;
     w.normal[1] += 1;
     w.eye[2] += 7;
-    for (int c = 0; c < 3; c++) // rounded as for the engine
+    for (int c = 0; c < 3; c++) // rounds the numbers as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     for (int c = 0; c < 3; c++)

@@ -60,7 +60,7 @@ static void ray_of(const world *w, int x, int y, quad o[3], quad d[3])
     unit(d);
 }
 
-/// Intersects a ray with a face. share: barycentric weights; *far: the distance. Returns false for a miss.
+/// Intersects a ray with a face. `share` gets the barycentric weights, *far the distance. Returns false for a miss.
 static bool meet(const world *w, int face, const quad o[3], const quad d[3], quad share[3], quad *far)
 {
     const quad *a = w->corner[faces[face][0]];
@@ -80,7 +80,7 @@ static bool meet(const world *w, int face, const quad o[3], const quad d[3], qua
     return share[0] > 0 && share[1] > 0 && share[2] > 0;
 }
 
-/// Phong's light at a point, as seen from the eye.
+/// Computes Phong's light at a point, as seen from the eye.
 static void light_of(const world *w, const quad p[3], const quad normal[3], quad out[3])
 {
     quad l[3], v[3], n[3] = { normal[0], normal[1], normal[2] }, forward[3];
@@ -244,7 +244,7 @@ static void compare(const world *w, const number *n, const glint_scene *scene, g
     s.camera = !strcmp(n->object, "camera") ? glint_scene_get(scene)->camera : NULL;
     s.material = !strcmp(n->object, "material") ? material : NULL;
     glint_slope both[2] = { s, s };
-    both[1].field = "ambient"; // as ambient equals diffuse
+    both[1].field = "ambient"; // both fields vary, because ambient equals diffuse
     const glint_derivative derivative = { "number", both, strcmp(n->field, "diffuse") == 0 ? 2 : 1 };
     glint_image *image = slope_picture(scene, desc, &derivative);
     true_slopes(w, n, slope, want);
@@ -282,7 +282,7 @@ static world random_world(int turn)
     fill(w.background, 0.1, 0.6);
     w.eye[2] += 7;
     w.position[2] += 4;
-    for (int c = 0; c < 3; c++) // rounded as for the engine
+    for (int c = 0; c < 3; c++) // rounds the numbers as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     return w;

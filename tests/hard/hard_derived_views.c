@@ -8,7 +8,7 @@
 
 #define WIDTH 40
 #define HEIGHT 30
-#define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< to 106 bits
+#define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< exact to 106 bits
 
 typedef enum look { PINHOLE, SQUARE, LENS, SQUARE_LENS, LOOKS } look;
 
@@ -19,7 +19,8 @@ typedef struct world {
     quad cue_color[3], cue_near[3], cue_far[3];
     look look;
     bool cue, own_color, veil, by_direction;
-    int focused; ///< 0: at the point that the camera looks at; 1: by distance; 2: at a point
+    int focused; ///< where the lens focuses: 0: on the point that the camera looks at; 1: at a distance; 2: on
+        ///< another point
 } world;
 
 static const number numbers[] = {
@@ -68,7 +69,7 @@ static quad focus_of(const world *w, const quad forward[3])
     return w->focused == 1 ? w->focus[0] : dot(way, forward);
 }
 
-/// The ray through a pixel's centre, from o along the unit vector d.
+/// Computes the ray through a pixel's centre, from o along the unit vector d.
 static void ray_of(const world *w, int x, int y, quad o[3], quad d[3])
 {
     quad forward[3], right[3], up[3], lens[2] = { 0 };
@@ -100,7 +101,7 @@ static quad meet_ball(const world *w, const quad o[3], const quad d[3])
     return disc < 0 ? -1 : -b - sqrtf128(disc);
 }
 
-/// Phong's formula; the floor is matt.
+/// Computes light by Phong's formula; the floor is matt.
 static void light_of(const world *w, const quad p[3], const quad n[3], const quad d[3], bool on_ball, quad out[3])
 {
     quad l[3], distance;
@@ -339,7 +340,7 @@ static world random_world(int turn)
     w.eye[2] += 7;
     for (int c = 0; c < 3 && w.by_direction; c++)
         w.at[c] -= w.eye[c];
-    for (int c = 0; c < 3; c++) // rounded as for the engine
+    for (int c = 0; c < 3; c++) // rounds the numbers as for the engine
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
     return w;

@@ -1,5 +1,5 @@
--- Coplanar faces of different shapes, where the first defined must always be hit, and rays that start on a face,
--- which must not hit it again. Coordinates use all their digits: multiples of powers of two can be right by accident.
+-- Rays at coplanar faces of different shapes must always hit the shape defined first. Rays that start on a face must
+-- not hit that face again. Coordinates use all their digits: multiples of powers of two can be right by accident.
 --   hard_faces.lua [--table] [--rays N] [--seed S]
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -85,7 +85,7 @@ end
 
 -- ---- Faces in one plane ----
 
--- Two shapes with coplanar faces: counts the rays that hit both there, and those that fail to return the first.
+-- Counts the rays that hit the coplanar faces of both shapes, and the rays that then fail to return the first shape.
 local function both(first, second, map, to_world, h)
   local function scene(...)
     local camera = glint.camera { eye = to_world { u(-.3, .3), h + 4.3, u(-.3, .3) }, at = to_world { 0, h, 0 }, up = { .1, .2, 1 }, fov = 9 }
@@ -97,7 +97,7 @@ local function both(first, second, map, to_world, h)
     local from = to_world { u(-2, 2), h + u(.5, 5), u(-2, 2) }
     local way = minus(to_world { u(-.8, .8), h, u(-.8, .8) }, from)
     local a, b, c = one:cast(from, way), two:cast(from, way), all:cast(from, way)
-    -- t on the side of a box or cylinder is unrelated to the other shape
+    -- on the side of a box or cylinder, the t of one shape is unrelated to the t of the other
     if a and b and math.abs(a.t - b.t) < 1e-12 * a.t then
       count = count + 1
       if a.t ~= b.t or c.t ~= a.t or c.object ~= first then wrong = wrong + 1 end
@@ -122,7 +122,7 @@ local function coincident(map_of, count)
   end
 end
 
--- A disk, a plane and a cap with a common point and oblique normal.
+-- Tests a disk, a plane and a cap with a common point and an oblique normal.
 local function oblique(count)
   local sum, bad = 0, 0
   for _ = 1, count do
@@ -145,7 +145,7 @@ local function oblique(count)
   row("disk and plane of one oblique place and normal", sum, bad)
 end
 
--- Seen from above, nothing that ends at the plane shadows it: pictures are identical with and without shadows.
+-- No shape that ends at the plane shadows it, as seen from above: pictures are identical with and without shadows.
 local function shadows(count)
   local sum, bad = 0, 0
   local oblique_way = unit(vector(1))
@@ -197,7 +197,7 @@ local function on_box()
   return glint.box { min = low, max = high }, toward(o, q)
 end
 
--- The side of a cylinder or cone, or its base. straight: along a coordinate axis.
+-- Tests rays that start on the side or the base of a cylinder or cone. straight: the axis is along a coordinate axis.
 local function on_round(kind, straight, cap)
   return function()
     local base = vector(2)
@@ -230,7 +230,7 @@ local function on_ball()
   return glint.sphere { center = center, radius = radius }, toward(plus(center, n, radius), plus(center, vector(.3), radius))
 end
 
--- A triangle perpendicular to an axis, or a midpoint of another triangle, computed without rounding.
+-- Rays from a point of a triangle perpendicular to an axis, or from a point of another triangle without rounding.
 local function on_mesh(straight)
   return function()
     local v, k, h = { vector(2), vector(2), vector(2) }, random(3), u(-2, 2)

@@ -25,7 +25,7 @@ static glint_material *facets(bool beckmann, double roughness, double f0)
     return material;
 }
 
-/// The textbook's D: alpha^2 / (pi (c^2 (alpha^2 - 1) + 1)^2).
+/// D by the textbook's formula: alpha^2 / (pi (c^2 (alpha^2 - 1) + 1)^2).
 #define NAIVE(name, real, cosine) \
     static double name(double alpha, double angle) \
     { \
@@ -35,19 +35,19 @@ static glint_material *facets(bool beckmann, double roughness, double f0)
 NAIVE(naive_float, float, cosf)
 NAIVE(naive_double, double, cos)
 
-/// The allowed error: roundings of 2^-24, the same for Beckmann's exponent, whose cosine is 1 minus a squared sine,
-/// and the rounding of the directions. The last moves the half vector by 2^-52, or 2^-22 in float, relative to the
-/// width of the lobe.
+/// Returns the allowed error, the sum of three: roundings of 2^-24; the same for Beckmann's exponent, whose cosine is
+/// 1 minus a squared sine; and the rounding of the directions, which moves the half vector by 2^-52, or 2^-22 in
+/// float, relative to the width of the lobe.
 static double allowed(bool beckmann, double roughness, double want, double tangent, bool in_float)
 {
     const double alpha = roughness * roughness, moved = (in_float ? 0x1p-21 : 0x1p-51) / alpha, at = tangent / alpha;
-    // derivative of log D by the half vector's angle over alpha
+    // the derivative of log D with respect to the half vector's angle over alpha
     const double steep = beckmann ? 2 * at : 4 * at / (1 + at * at);
     return want * (0x1p-24 * (40 + (beckmann ? 8 * at * at * (1 + tangent * tangent) : 0)) +
                    (steep + moved) * moved * 2 * (1 + tangent * tangent));
 }
 
-/// The tangent of the angle between n and h.
+/// Returns the tangent of the angle between n and the half vector h.
 static double half_tangent(const double n[3], const double l[3], const double v[3])
 {
     double h[3], along = 0, across = 0, ll = hypot(hypot(l[0], l[1]), l[2]), vv = hypot(hypot(v[0], v[1]), v[2]);
@@ -91,7 +91,8 @@ static double compare(bool beckmann, double roughness, double f0, const double n
     return off / limit;
 }
 
-/// P12, P13, and the same for Beckmann: l is 2 `angle` away from v = n, so that h is `angle` away from n. stated: D.
+/// P12, P13, and the same for Beckmann: l is at an angle of 2 `angle` from v = n, so that h is at `angle` from n.
+/// `stated` is the known value of D.
 static void check_lobe(const char *id, double alpha, double angle, double stated)
 {
     const double v[3] = { 0, 0, 1 }, l[3] = { sin(2 * angle), 0, cos(2 * angle) };
@@ -111,7 +112,7 @@ static void check_lobe(const char *id, double alpha, double angle, double stated
     }
 }
 
-/// Random roughness and directions, half of them inside the lobe.
+/// Tests random roughness and directions, half of them inside the lobe.
 static void sweep(uint64_t count)
 {
     double worst = 0;
@@ -134,7 +135,7 @@ static void sweep(uint64_t count)
         for (int c = 0; c < 3; c++)
             v[c] *= nv < 0 ? -1 : 1;
         if (fabs(nl) < 1e-3 || fabs(nv) < 1e-3)
-            continue; // the rounding of a normal decides about the horizon
+            continue; // the sign of n.l or n.v depends on the rounding of a normal
         worst = fmax(worst, compare(chance(0.5), roughness, f0, n, l, v, NULL));
     }
     if (hard_table)

@@ -14,7 +14,7 @@ static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
 
 // ---- Tangent spheres ----
 
-#define SIDE 32 ///< makes all rays exact with a field of view of 90 degrees or integer sizes
+#define SIDE 32 ///< makes all rays exact, with a field of view of 90 degrees or integer sizes
 #define CROWD 24
 
 /// A camera along -z whose rays are (u, v, -1) from one point, or (0, 0, -1) from (u, v, 0), with u and v multiples
@@ -45,7 +45,7 @@ static grid_view random_view(void)
     return view;
 }
 
-/// A sphere that is almost tangent to a pixel's ray.
+/// Returns a sphere that is almost tangent to a pixel's ray.
 static hard_sphere tangent_sphere(const grid_view *view)
 {
     const hard_ray ray = ray_of_pixel(view, (int)(random_bits() % SIDE), (int)(random_bits() % SIDE));
@@ -61,7 +61,7 @@ static hard_sphere tangent_sphere(const grid_view *view)
     return sphere;
 }
 
-/// A sphere so large that the whole grid of rays starts just above its surface.
+/// Returns a sphere so large that the whole grid of rays starts just above its surface.
 static hard_sphere near_ground(const grid_view *view)
 {
     hard_sphere sphere = { .r = view->scale * log_uniform(1e3, 1e10) };
@@ -88,7 +88,8 @@ static bool surely_missed(const hard_ray *ray, const hard_sphere *sphere)
     return xx > 1.01 * sphere->r * sphere->r * dd + 1e-12 * ff * dd;
 }
 
-/// The nearest sphere, counted from 1; 0: none; -1: undecidable, as these rays are rounded once more than others.
+/// Returns the nearest sphere, counted from 1; 0 for none; -1 if undecidable, because these rays are rounded once
+/// more than others.
 static int nearest_of(const hard_ray *ray, const hard_sphere *spheres, int count, double *t)
 {
     int nearest = 0;
@@ -212,7 +213,7 @@ static void judge_still(const hard_still *still, tally *sum)
             double off = 0;
             for (int c = 0; c < 3; c++)
                 off = fmax(off, fabs(got.color[c] - want.color[c]));
-            // a highlight's steepest change: the exponent times the rounding error of the angle
+            // allows for the steepest change of a highlight: the exponent times the rounding error of the angle
             const bool right = got.object == want.object && got.lit == want.lit && off < 1e-4;
             sum->pixels++;
             sum->hits += want.object > 0;
@@ -244,12 +245,13 @@ static void random_stills(uint64_t pixels)
 typedef struct bare {
     hard_sphere sphere;
     hard_plane plane;
-    bool is_plane, twice; ///< twice: there is a second, identical object
+    bool is_plane, twice; ///< twice: whether there is a second, identical object
     double eye[3], at[3];
     glint_light_desc light;
 } bare;
 
-/// An eye outside or inside; a light outside, near or far, or inside together with the eye.
+/// Makes a shape with the eye outside or inside, and with the light outside, near or far, or inside together with the
+/// eye.
 static bare random_bare(void)
 {
     bare b = { .is_plane = chance(0.2), .twice = chance(0.3) };
@@ -304,7 +306,7 @@ static glint_image *render_bare(const bare *b, bool shadows, glint_frame_stats *
     return image;
 }
 
-/// A convex surface never occludes the light at a point of its own that faces the light.
+/// A convex shape never occludes the light at those of its own points that face the light.
 static void leaving_rays(uint64_t rays)
 {
     hard_test("fuzz", "rays leaving for the light");

@@ -11,7 +11,8 @@
 
 typedef struct tally {
     uint64_t rays, hits, close, wrong;
-    double worst_ulp, worst_t, worst_normal; ///< the last two are relative to the allowed error
+    double worst_ulp, worst_t, worst_normal; ///< largest errors; worst_t and worst_normal are relative to the allowed
+        ///< error
 } tally;
 
 static void report(const char *name, const tally *sum)
@@ -114,7 +115,8 @@ static bool same_sphere(const hard_sphere *a, const hard_sphere *b)
     return a->r == b->r && a->c[0] == b->c[0] && a->c[1] == b->c[1] && a->c[2] == b->c[2];
 }
 
-/// Adds all spheres in one shape, or each as its own; in one shape, the element index equals the sphere's.
+/// Adds all spheres as one shape, whose element indices equal the spheres' indices, or each sphere as a separate
+/// shape.
 static void add_many(glint_scene *scene, const hard_sphere *spheres, int count, glint_shape *shapes[MANY], bool as_one)
 {
     for (int i = 0; i < count && !as_one; i++)
@@ -144,7 +146,8 @@ static int which(const glint_hit *got, glint_shape *const shapes[MANY], int coun
     return -1;
 }
 
-/// The engine's sphere must be hit, no other sphere may be clearly nearer, and no earlier one may be identical.
+/// The ray must hit the engine's sphere, no other sphere may be clearly nearer, and no earlier sphere may be
+/// identical.
 static judgement judge_many(const hard_ray *ray, const hard_sphere *spheres, int count, bool hit, int index,
                             const glint_hit *got)
 {
@@ -168,7 +171,7 @@ static judgement judge_many(const hard_ray *ray, const hard_sphere *spheres, int
             j.verdict = WRONG_DECISION;
         if (i == index || !want[i].hit || want[i].t >= got->t)
             continue;
-        glint_hit other = *got; // whether another sphere is nearer, allowing for the error of t
+        glint_hit other = *got; // tests whether another sphere is nearer, allowing for the error of t
         memcpy(other.normal, want[i].n, sizeof other.normal);
         const judgement nearer = judge_sphere(ray, &spheres[i], &want[i], true, &other);
         if (nearer.verdict != RIGHT)

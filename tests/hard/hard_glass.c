@@ -6,12 +6,12 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#define LOSS 0x1p-20 ///< light that dropped weak rays may carry
+#define LOSS 0x1p-20 ///< largest error: the light that dropped weak rays may carry
 
 // ---- Fresnel ----
 
-/// The share reflected, at depth 1, in a white world, for a ray that hits a plane of glass of index `ior` from inside
-/// or from air, along d.
+/// Returns the share of light that a glass plane of index `ior` reflects, at depth 1, in a white world. The ray along
+/// d hits the plane from inside or from air.
 static double reflectance(double ior, bool from_inside, const double d[3], glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -25,7 +25,7 @@ static double reflectance(double ior, bool from_inside, const double d[3], glint
     const double mirrored = point_seen(scene, &ray, precision, 1, GLINT_PASS_MIRROR);
     const double through = point_seen(scene, &ray, precision, 1, GLINT_PASS_TRANSMISSION);
     glint_scene_release(scene);
-    const double lost = mirrored > 0 && through > 0 ? 0 : LOSS; // a share too weak to be visible is not traced
+    const double lost = mirrored > 0 && through > 0 ? 0 : LOSS; // too weak a share is not traced
     hard_check(fabs(mirrored + through - 1) < lost + 0x1p-22, "mirrored %.9g and let through %.9g", mirrored, through);
     return mirrored;
 }
@@ -41,8 +41,8 @@ static double reflectance(double ior, bool from_inside, const double d[3], glint
 NAIVE(naive_float, float, sqrtf)
 NAIVE(naive_double, double, sqrt)
 
-/// Rounding of the ray's direction moves the cosine beyond the surface by ratio^2 2^-52 over that cosine, and near
-/// the critical angle by the square root.
+/// Rounding of the ray's direction changes the cosine beyond the surface: by ratio^2 2^-52 divided by that cosine, or
+/// near the critical angle by the square root of ratio^2 2^-52.
 static bool check_fresnel(const char *id, const char *what, double ior, bool from_inside, double cosine, double stated)
 {
     const double ratio = from_inside ? ior : 1 / ior, sine = sqrt((1 - cosine) * (1 + cosine));
@@ -55,7 +55,7 @@ static bool check_fresnel(const char *id, const char *what, double ior, bool fro
     double *const got[2] = { &shown.in_double, &shown.in_float };
     for (int p = 0; p < 2; p++) {
         const double rounding = p ? 0x1p-21 : 0x1p-50;
-        // R's slope is 4/cos at grazing angles and 4/cos' at critical ones.
+        // the slope of the reflectance is 4/cos at grazing angles and 4/cos' at critical angles
         const double beyond = sqrt(fabs(1 - ratio * ratio * sine * sine)), moved = rounding * ratio * ratio;
         const double off =
             0x1p-22 + 8 * (rounding / fmax(cosine, rounding) + ratio * fmin(sqrt(moved), moved / fmax(beyond, 1e-300)));
@@ -69,7 +69,7 @@ static bool check_fresnel(const char *id, const char *what, double ior, bool fro
 
 static void fresnel(void)
 {
-    const double critical = sqrt(5) / 3; // sin = 2/3
+    const double critical = sqrt(5) / 3; // the cosine where the sine is 2/3
     char what[80];
     hard_test("M1", "critical angle");
     check_fresnel("M1", "1.5 -> 1, sin = 2/3: R", 1.5, true, critical, NAN);
@@ -86,7 +86,7 @@ static void fresnel(void)
     hard_test("M4", "Fresnel from inside");
     check_fresnel("M4", "1.5 -> 1 at cos 0.75", 1.5, true, 0.75, 0.5);
     const bool table = hard_table;
-    hard_table = false; // too many for the table
+    hard_table = false; // too many rows for the table
     for (int i = 0; i < 300; i++) {
         const double ior = chance(0.3) ? 1 + log_uniform(1e-6, 1) : log_uniform(0.1, 10);
         check_fresnel("M3", "random", ior, chance(0.5), chance(0.3) ? log_uniform(1e-6, 1) : uniform(0, 1), NAN);
@@ -96,7 +96,7 @@ static void fresnel(void)
 
 // ---- Snell ----
 
-/// Returns whether a ray refracted at the origin hits a sheet `below` the surface that starts at x.
+/// Returns whether a ray refracted at the origin hits a sheet that lies `below` the surface and starts at x.
 static bool lands_beyond(double ior, const double d[3], double below, double x, glint_precision precision)
 {
     const hard_plane plane = { { 0 }, { 0, 1, 0 } };
@@ -128,7 +128,7 @@ static bool lands_beyond(double ior, const double d[3], double below, double x, 
     return seen > 0;
 }
 
-/// The refracted ray's tangent, by bisection over the edge of a sheet.
+/// Returns the refracted ray's tangent, by bisection over the edge of a sheet.
 static double tangent(double ior, const double d[3], glint_precision precision)
 {
     double low = 0, high = 1e3;
@@ -184,7 +184,7 @@ static long resident_kb(void)
     return usage.ru_maxrss;
 }
 
-/// The light between two glowing mirrors that face each other.
+/// Returns the light between two glowing mirrors that face each other.
 static double facing(double mirror, double depth, double visible_light, glint_precision precision)
 {
     const hard_plane low = { { 0 }, { 0, 1, 0 } }, high = { { 0, 1, 0 }, { 0, -1, 0 } };
@@ -239,13 +239,13 @@ static void depth(void)
 
 // ---- Total reflection ----
 
-/// The light through a glass rod along x, one unit thick: a ray enters at 45 degrees through one end and leaves
-/// through the other, after `reflections` total reflections.
+/// Returns the light through a glass rod along x, one unit thick. A ray enters at 45 degrees through one end, and
+/// leaves through the other end after `reflections` total reflections.
 static double through_rod(int reflections, double transmission, double mirror, glint_precision precision)
 {
     static const double white[3] = { 1, 1, 1 };
-    const double rise = 1 / sqrt(2 * 1.5 * 1.5 - 1); // tangent inside the glass, for a sine of sqrt(1/2) / 1.5
-    const hard_ray ray = { { -0.5, 0, 0 }, { 1, 1, 0 } }; // enters halfway up
+    const double rise = 1 / sqrt(2 * 1.5 * 1.5 - 1); // the tangent inside the glass, for a sine of sqrt(1/2) / 1.5
+    const hard_ray ray = { { -0.5, 0, 0 }, { 1, 1, 0 } }; // the ray enters halfway up
     glint_shape_desc rod = glint_shape_desc_default(GLINT_SHAPE_BOX);
     glint_scene *scene = scene_new();
     glint_shape *shape;
@@ -287,9 +287,9 @@ static void total(void)
     }
 }
 
-/// A random prism with total reflections as above, of any length, size, index, angle, position and orientation. *out:
-/// the transmitted light; *through: its true value, transmission^2. Returns false for prisms close to the critical
-/// angle.
+/// A random prism with total reflections as above, of any length, size, index, angle, position and orientation. *out
+/// gets the transmitted light, *through the true value, transmission^2. Returns false for prisms close to the
+/// critical angle.
 static bool random_prism(double *out, double *through)
 {
     static const double white[3] = { 1, 1, 1 };
@@ -298,7 +298,7 @@ static bool random_prism(double *out, double *through)
     const int reflections = 1 + (int)(random_bits() % 40);
     double axis[3], by[3];
     if (ior * ior * (1 - inside * inside) < 1.001 || rise * reflections < 1e-2)
-        return false; // close to the critical angle
+        return false; // the prism is close to the critical angle
     *through = uniform(0.1, 1);
     random_direction(axis);
     for (int c = 0; c < 3; c++)
@@ -320,7 +320,7 @@ static bool random_prism(double *out, double *through)
     glint_material_release(rod.material);
     glint_shape_release(shape);
     scene_light_up(scene, 0, white);
-    // Enters halfway up.
+    // The ray enters halfway up.
     const double from[3] = { -size * sqrt(1 - sine * sine), size * (0.5 - sine), 0 },
                  d[3] = { sqrt(1 - sine * sine), sine, 0 };
     hard_ray ray;

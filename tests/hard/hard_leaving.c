@@ -50,12 +50,12 @@ static glint_light_desc random_light(const hard_ray *ray, const glint_hit *hit)
     for (int c = 0; c < 3; c++)
         away = fmax(away, fabs(ray->o[c] - hit->point[c]));
     if (light.kind == GLINT_LIGHT_SPHERE || light.kind == GLINT_LIGHT_DISK) {
-        light.radius = away * log_uniform(1e-9, 10); // it may touch or overlap the shape
+        light.radius = away * log_uniform(1e-9, 10); // the light may touch or overlap the shape
         light.samples = 4;
         light.has_radiance = chance(0.5);
         light.radiance = 1;
     }
-    for (int c = 0; c < 3; c++) { // in front of the point, sometimes by very little
+    for (int c = 0; c < 3; c++) { // the light is in front of the point, sometimes by very little
         light.position[c] = hit->point[c] + away * log_uniform(1e-9, 1e3) * (hit->normal[c] + side[c]);
         light.direction[c] = -(hit->normal[c] + side[c]);
     }
@@ -77,7 +77,7 @@ static glint_image *lit(glint_scene *scene, const glint_light_desc *light, bool 
     return image;
 }
 
-/// The picture is identical with and without shadows.
+/// Checks that the picture is identical with and without shadows.
 static void shadows(int kind, uint64_t rays)
 {
     tally sum = { 0 };

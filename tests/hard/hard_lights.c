@@ -1,5 +1,5 @@
 /// Test cases for lights: at the shaded point, inside shapes, far away, spots, area lights, and sums of very many
-/// lights. Each is rendered in double and float, compared with the textbook's formula, and repeated with other
+/// lights. Each case is rendered in double and float, compared with the textbook's formula, and repeated with other
 /// numbers.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
@@ -83,12 +83,12 @@ static void far_and_near(void)
                               .naive_double = naive_double(far, 2 * far, 1, 0),
                               .naive_float = naive_float(far, 2 * far, 1, 0) };
         snprintf(what, sizeof what, "light at %g", far);
-        // float ends at 3.4e38
+        // the range of float ends at 3.4e38
         compare("L4", what, &light, &shown, 0x1p-23, far < 1e38 ? 0x1p-22 : 1);
     }
     hard_test("L5", "light next to the point, inverse square");
     static const double heights[] = { 1e-10, 1e-30, 1e-100, 1e-300 };
-    for (int i = 0; i < 4; i++) { // straight above the point that the ray hits
+    for (int i = 0; i < 4; i++) { // lights straight above the point that the ray hits
         const double near = heights[i];
         const hard_plane floor = { { 0 }, { 0, 1, 0 } };
         const hard_ray down = { { 0, 4, 0 }, { 0, -1, 0 } };
@@ -104,7 +104,7 @@ static void far_and_near(void)
             scene_light(scene, &light);
             *got[p] = point_seen(scene, &down, p ? GLINT_FLOAT : GLINT_DOUBLE, 5, GLINT_PASS_BEAUTY);
             glint_scene_release(scene);
-            // in float a height below the smallest float is 0: the light is at the point
+            // a height below the smallest float is 0 in float, so the light is at the point
             const bool vanished = p && (float)near == 0;
             right &=
                 hard_check(vanished ? *got[p] == 0 : *got[p] >= 1 && *got[p] < HUGE_VAL, "%g away: %g", near, *got[p]);
@@ -116,8 +116,8 @@ static void far_and_near(void)
 
 // ---- Inside and outside of an opaque ball ----
 
-/// L2, L3, L3b: the visible light on a ball of radius 1 straight ahead, for positions of eye and light inside or
-/// outside.
+/// L2, L3, L3b: the visible light on a ball of radius 1 straight ahead, for an eye and a light inside or outside the
+/// ball.
 static void within(void)
 {
     static const struct {
@@ -138,7 +138,7 @@ static void within(void)
         double *const got[2] = { &shown.in_double, &shown.in_float };
         bool right = true;
         hard_test(list[i].id, list[i].what);
-        for (int e = -30; e <= 30; e += 10) // scales, and view directions
+        for (int e = -30; e <= 30; e += 10) // other scales, and other view directions
             for (int way = 0; way < 3; way++)
                 for (int p = 0; p < 2; p++) {
                     hard_ray ray = { { 0 }, { 0 } };
@@ -199,7 +199,7 @@ static void check_spot(const char *id, const char *what, double inner, double ou
                           .naive_float = naive_spot(inner, outer, angle) * pow(cos(angle), exponent) };
     if (!isnan(stated))
         hard_check(fabs(shown.truth - stated) <= 5e-10, "oracle %.12g, stated %.12g", shown.truth, stated);
-    // the profile's slope times the rounding of the cosine and of the pixel's position, and of the power
+    // allows for the rounding of the cosine and of the pixel's position, times the profile's slope, and for the power
     const double width = fmax(cos(inner) - cos(outer), 1e-300), power = 1 + exponent;
     const double off = 4e-7 * power + fmin(1, 1e-14 / width), off_float = 1e-5 * power + fmin(1, 2e-6 / width);
     compare(id, what, &light, &shown, off, off_float);
@@ -240,7 +240,7 @@ static void spots(void)
     check_spot("L7", "inner 0, outer 1e-3, 5e-4 off", 0, 1e-3, 0, 5e-4, NAN);
     check_spot("L7", "inner 89, outer 179, 85 off", 89 * DEGREE, 179 * DEGREE, 0, 85 * DEGREE, NAN);
     const bool table = hard_table;
-    hard_table = false; // too many for the table
+    hard_table = false; // too many rows for the table
     for (int i = 0; i < 500; i++) {
         const double outer = uniform(0, 3.14), inner = uniform(0, outer), exponent = chance(0.5) ? 0 : uniform(0, 50);
         check_spot("L7", "random", inner, outer, exponent, uniform(0, 1.4), NAN);

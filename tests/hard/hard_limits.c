@@ -189,7 +189,7 @@ static void check_finite(uint64_t scenes)
                 for (size_t k = 0; k < sizeof passes / sizeof *passes; k++) {
                     pixel(image, passes[k], x, y, p);
                     for (int c = 0; c < 3; c++)
-                        good = good && p[c] >= 0; // false for NaN
+                        good = good && p[c] >= 0; // the comparison is false for NaN
                 }
                 pixel(image, GLINT_PASS_BEAUTY, x, y, p);
                 infinite += !isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]);
@@ -237,7 +237,7 @@ static void check_written(void)
 
 // ---- The smallest and the most distant shapes ----
 
-/// A shape around the origin, 2 `size` wide and deep. A ray down the z axis hits it at z = size.
+/// Makes a shape around the origin, 2 `size` wide and deep. A ray down the z axis hits it at z = size.
 static glint_shape *small_shape(glint_shape_kind kind, bool mapped, double size)
 {
     static const double x[3] = { 1, 0, 0 }, z[3] = { 0, 0, 1 };
@@ -249,9 +249,9 @@ static glint_shape *small_shape(glint_shape_kind kind, bool mapped, double size)
     desc.major = 2 * own;
     desc.minor = own;
     for (int c = 0; c < 3; c++) {
-        const double *along = kind == GLINT_SHAPE_CYLINDER ? x : z; // a cylinder is hit on its side
+        const double *along = kind == GLINT_SHAPE_CYLINDER ? x : z; // rays hit a cylinder's side
         desc.center[c] = kind == GLINT_SHAPE_DISK    ? own * z[c]
-                         : kind == GLINT_SHAPE_TORUS ? -2 * own * x[c] // its tube passes through the origin
+                         : kind == GLINT_SHAPE_TORUS ? -2 * own * x[c] // puts its tube at the origin
                                                      : 0;
         desc.normal[c] = desc.axis[c] = z[c];
         desc.base[c] = -own * along[c];
@@ -275,7 +275,8 @@ static const char *const size_names[] = { [GLINT_SHAPE_SPHERE] = "sphere 'mite'"
                                           [GLINT_SHAPE_CONE] = "cone 'mite'",
                                           [GLINT_SHAPE_TORUS] = "torus 'mite'" };
 
-/// Checks that a one-pixel frame shows the scene's first object, or is refused with the reason. thin: it may miss.
+/// Checks that a one-pixel frame shows the scene's first object, or is refused with the reason. If `thin`, the ray
+/// may miss the object.
 static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, const char *name, const char *refused)
 {
     const glint_render_desc desc = { .width = 1, .height = 1, .samples = 1, .passes = 1u << GLINT_PASS_OBJECT_ID,
@@ -313,7 +314,7 @@ static void check_size(glint_shape_kind kind, bool mapped, double size, double d
     bool hit = false;
     glint_hit got = { 0 };
     const glint_status status = glint_scene_cast(scene, ray.o, ray.d, &hit, &got, &error);
-    // a cone's side and base are rounded separately: below this size a gap may open between them
+    // the side and the base of a cone are rounded separately: below this size a gap may open between them
     const bool thin = kind == GLINT_SHAPE_CONE && size < 0x1p-50 * distance;
     const bool right = hit ? fabs(got.t / (distance - size) - 1) <= 0x1p-51 : thin;
     const bool told = refused && status == GLINT_ERR_INVALID && says(&error, name, refused);
@@ -327,8 +328,8 @@ static void check_size(glint_shape_kind kind, bool mapped, double size, double d
     glint_scene_release(scene);
 }
 
-/// Shapes smaller than 1e-150, absolutely or relative to their distance, are refused with the reason. All others are
-/// hit.
+/// Shapes smaller than 1e-150, absolutely or relative to their distance, are refused with the reason. The rays hit
+/// all other shapes.
 static void check_small(void)
 {
     hard_test("S25", "the smallest spheres and solids, the farthest");
@@ -392,7 +393,7 @@ static void check_sides(void)
                    "%d x %d: %ld pixels wrong, %g in the middle", sides[i][0], sides[i][1], wrong, middle[0]);
         glint_image_release(image);
     }
-    // I4: nothing is allocated for these, and all pixels and samples of the largest size can be counted.
+    // I4: the engine allocates nothing for refused sizes, and can count all pixels and samples of the largest size.
     const double refused[][2] = { { 65536, 65536 }, { 65536, 1 }, { 1, 65536 },     { 1, 0 },
                                   { 0, 1 },         { 1.5, 2 },   { NAN, 2 },       { 2, NAN },
                                   { HUGE_VAL, 2 },  { -1, 5 },    { 1e300, 1e300 }, { 4294967297, 1 } };
@@ -406,7 +407,7 @@ static void check_sides(void)
                        (!strncmp(error.message, "width", 5) || !strncmp(error.message, "height", 6)),
                    "%g x %g is refused by name", refused[i][0], refused[i][1]);
     }
-    desc.width = desc.height = 65535; // each side is allowed, their product is not
+    desc.width = desc.height = 65535; // each side is allowed, the product of the sides is not
     hard_check(glint_plan_create(scene, &desc, &plan, &error) == GLINT_ERR_INVALID &&
                    strstr(error.message, "65535 x 65535"),
                "65535 x 65535 is refused by name");

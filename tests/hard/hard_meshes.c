@@ -80,7 +80,7 @@ static void seams(uint64_t rays)
             }
             glint_scene_release(scene);
         }
-        // in float the eye's position is imprecise relative to a distant mesh, but not to a nearby one
+        // in float the eye's position is imprecise relative to a distant mesh, but not to a nearby mesh
         hard_check(kind % 2 || shown.in_float == 0, "%g of %llu rays get out in float", shown.in_float,
                    (unsigned long long)requested);
         snprintf(what, sizeof what, "%s: of %llu rays at seams, out (float: of %llu)", names[kind],
@@ -100,7 +100,7 @@ static void no_area(int count)
         double v[5][3], along[3], length = log_uniform(1e-6, 1e6);
         const uint32_t corners[5] = { 0, 1, 2, 3, 4 }, three = 3, five = 5;
         random_direction(along);
-        for (int c = 0; c < 3; c++) { // multiples of one step: exactly collinear
+        for (int c = 0; c < 3; c++) { // the corners are multiples of one step, so they are exactly collinear
             along[c] = rint(along[c] * 1024) / 1024 * exp2(rint(log2(length)));
             v[0][c] = 0;
             v[1][c] = along[c];
@@ -137,7 +137,8 @@ static void no_area(int count)
 
 static double whole(double low, double high) { return rint(uniform(low, high)); }
 
-/// A triangle with integer coordinates times a size, and a ray in its plane that passes all its corners on one side.
+/// Makes a triangle with integer coordinates times a size. Returns a ray in the triangle's plane that passes all
+/// corners on one side.
 static hard_ray aim_shared_edge(double corner[3][3])
 {
     const double size = uniform(0.1, 10);
@@ -147,7 +148,7 @@ static hard_ray aim_shared_edge(double corner[3][3])
             from[k] = whole(-6, 6);
             along[k] = whole(-6, 6);
         }
-        for (int j = 0; j < 3; j++) // the corners are at 0, f and g
+        for (int j = 0; j < 3; j++) // the other corners are at 0, f and g
             side[j] = ((j == 1) - from[0]) * along[1] - ((j == 2) - from[1]) * along[0];
     } while (!((side[0] > 0 && side[1] > 0 && side[2] > 0) || (side[0] < 0 && side[1] < 0 && side[2] < 0)));
     do {
@@ -171,7 +172,8 @@ static hard_ray aim_shared_edge(double corner[3][3])
     return ray;
 }
 
-/// G1: a ray in a triangle's plane that misses it by at least one step: rounding tilts the ray, but not that far.
+/// G1: a ray in a triangle's plane misses the triangle by at least one step. Rounding tilts the ray, but by less than
+/// that.
 static void in_plane(uint64_t rays)
 {
     const uint32_t corners[3] = { 0, 1, 2 }, three = 3;
@@ -218,7 +220,8 @@ static glint_value op(glint_builder *b, glint_op which, glint_value x, glint_val
     return out[0];
 }
 
-/// 1 where u and v are in 0 .. 1 and a checker of 1e10 squares per unit is 0 or 1. NaN gives 0.
+/// Makes a pattern that is 1 where u and v are in 0 .. 1 and a checkerboard of 1e10 squares per unit is 0 or 1. For
+/// NaN it is 0.
 static glint_program *proper_coordinates(void)
 {
     glint_builder *b;

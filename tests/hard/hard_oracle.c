@@ -22,7 +22,7 @@ static void check_by_hand(void)
         hard_check(want.hit && want.t == 6 && want.n[0] == 0.6 && want.n[1] == 0 && want.n[2] == 0.8 &&
                        want.cosine == 0.8,
                    "6 and (0.6, 0, 0.8) at scale 2^%d, got %a", e, want.t);
-        want = oracle_sphere(&back, &ball); // starts on the surface: the root 0 does not count
+        want = oracle_sphere(&back, &ball); // the ray starts on the surface: the root 0 does not count
         hard_check(want.hit && want.t == 4 && want.surface == 0, "4 at scale 2^%d, got %a", e, want.t);
         want = oracle_sphere(&touch, &ball);
         hard_check(want.tangency == 0, "exact tangency, got %a", want.tangency);
@@ -37,7 +37,7 @@ static void check_by_hand(void)
     }
 }
 
-/// The test cases against answers computed elsewhere with 4096 bits, and 113 bits against more.
+/// Compares the oracle with answers that were computed elsewhere with 4096 bits, and 113 bits with more bits.
 static void check_known(void)
 {
     hard_test("oracle", "the named cases");
@@ -55,7 +55,7 @@ static void check_known(void)
     }
 }
 
-/// Fuzz rays that 113 bits decide, and those that need more.
+/// Tests fuzz rays for which 113 bits are enough, and rays that need more.
 static void check_quick(uint64_t count)
 {
     hard_test("oracle", "113 bits against 400");

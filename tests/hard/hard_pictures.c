@@ -11,10 +11,10 @@
 
 #define WIDTH 96
 #define HEIGHT 72
-#define TIMED_SCALE 8 ///< factor on the sides of the timed pictures
-#define TIMED_RUNS 15 ///< per precision
+#define TIMED_SCALE 8 ///< factor by which the sides of the timed pictures are larger
+#define TIMED_RUNS 15 ///< timed runs for each precision
 
-/// Three spheres that touch a huge one, with shadows on each other.
+/// Makes three spheres that touch a huge sphere and cast shadows on each other.
 static hard_still ordinary(const char *name, double ground)
 {
     hard_still s = { .name = name,
@@ -65,8 +65,9 @@ static hard_still moved(const char *name, double scale, const double by[3])
 }
 
 typedef struct errors {
-    long object, shadow, over1, wrong; ///< numbers of pixels; `wrong` in any of these ways
-    int worst; ///< 8-bit steps
+    long object, shadow, over1, wrong; ///< numbers of pixels with a wrong object, a wrong shadow or a colour off by
+        ///< more than one step; with any of these
+    int worst; ///< largest colour error, in 8-bit steps
     double ms; ///< shortest time for the larger picture; 0: not measured
 } errors;
 
@@ -90,7 +91,8 @@ static void note(errors *sum, const still_pixel *want, const still_pixel *got)
     sum->worst = off > sum->worst ? off : sum->worst;
 }
 
-/// The shortest of several processor times, which other programs affect less, alternating the two precisions.
+/// Measures the processor time of both precisions in turn, several times. Stores the shortest time, which other
+/// programs affect least.
 static void time_both(const hard_still *still, errors *in_float, errors *in_double)
 {
     glint_scene *scene = still_scene(still);
@@ -144,7 +146,7 @@ static errors textbook_errors(const hard_still *still, const still_pixel *want, 
     return sum;
 }
 
-/// Writes the cells that are identical on every machine. If README.md has the row, its cells must match.
+/// Writes the cells that are identical on every machine. If README.md has this row, the row's cells must match.
 static void write_row(char row[256], const char *name, const errors *in_float, const errors *in_double)
 {
     snprintf(row, 256, "| %s | %ld, %ld, %ld | %ld, %ld, %ld |", name, in_float->object, in_float->shadow,
@@ -190,7 +192,7 @@ static const still_pixel *trace_truth(const hard_still *still)
 
 // ---- The bound of --precision float ----
 
-/// The range of a scene's numbers: the largest length or coordinate, in radii of the smallest sphere.
+/// Returns the range of a scene's numbers: the largest length or coordinate, in radii of the smallest sphere.
 static double span_of(const hard_still *still)
 {
     double least = HUGE_VAL, most = 0;
@@ -205,10 +207,10 @@ static double span_of(const hard_still *still)
     return most / least;
 }
 
-#define FLOAT_SPAN 2e4 ///< up to this range, float is as right as double except for one pixel in FLOAT_PIXELS
+#define FLOAT_SPAN 2e4 ///< up to this span, float is as accurate as double except for one pixel in FLOAT_PIXELS
 #define FLOAT_PIXELS 5000
 
-/// Many still lifes within that range, of any size, near the origin and far from it.
+/// Tests many still lifes within that range, of any size, near the origin and far from it.
 static void check_float(int stills)
 {
     hard_test("float", "still lifes of four digits");

@@ -17,7 +17,7 @@ end
 -- ---- Spheres ----
 
 local O = { 0, 0, 0 }
--- id, origin, direction, centre, radius, t, normal; t false: a miss
+-- id, origin, direction, centre, radius, t, normal; t is false for a miss
 local cases = {
   { "S01", { 0, 0, 5 }, { 0, 0, -1 }, O, 1, 4, { 0, 0, 1 } },
   { "S10", { 0, 1.75, 0 }, { 1, -0.125, 0.25 }, { 0, -1e7, 0 }, 1e7, 14.000083300991285,
@@ -46,7 +46,7 @@ local function check_hit(id, hit, origin, direction, center, radius, t, normal)
   near(id .. ": t", hit.t, t, 1e-13 * t)
   for c = 1, 3 do
     near(("%s: normal[%d]"):format(id, c), hit.normal[c], normal[c], allowed)
-    -- The point must be where t says, within rounding relative to its terms.
+    -- The point must be where t says, up to a rounding error relative to these terms.
     local size = math.abs(origin[c]) + math.abs(t * direction[c]) + radius + math.abs(center[c])
     near(("%s: point[%d]"):format(id, c), hit.point[c], origin[c] + t * direction[c], 1e-12 * size)
   end
@@ -82,7 +82,7 @@ do -- S28: the outer of two concentric spheres, in any order of definition
   end
 end
 
-do -- ties: the first defined wins
+do -- ties: the object defined first wins
   local a, b = glint.sphere { center = O, radius = 1 }, glint.sphere { center = O, radius = 1 }
   check(glint.scene { a, b }:cast({ 0, 0, 5 }, { 0, 0, -1 }).object == a, "S38: the first expected, a here")
   check(rawequal(glint.scene { b, a }:cast({ 0, 0, 5 }, { 0, 0, -1 }).object, b), "S38: the first expected, b here")
@@ -104,7 +104,7 @@ do
   check(below and below.t == 2 and below.normal.y == 1, "plane: its own normal also from behind")
 end
 
-do -- which of many spheres; nothing to hit
+do -- which of many spheres is hit; a scene with nothing to hit
   local rows = {}
   for i = 1, 100 do
     for _, x in ipairs { i, 0, 0, 0.25 } do rows[#rows + 1] = x end
@@ -129,7 +129,7 @@ end
 local function phong(...) return specular("phong", ...) end
 local function blinn(...) return specular("blinn_phong", ...) end
 
--- A direction in the x-z plane whose angle with z has cosine c.
+-- Returns a direction in the x-z plane that is at an angle of cosine c to the z axis.
 local function tilted(c) return { math.sqrt(1 - c * c), 0, c } end
 local Z = { 0, 0, 1 }
 local REL = 4e-6 -- the kernels shade in float32, with this error bound for their power function

@@ -3,7 +3,7 @@
 -- hard_shading.c, the largest numbers and counts in hard_limits.c, random scenes in hard_frames.c.
 local glint = require "glint"
 
-local tabular = arg and arg[1] == "--table" -- for `make hard`
+local tabular = arg and arg[1] == "--table" -- prints tables for `make hard`
 if tabular then print "Whole scenes.\n\n| case | verdict |\n| --- | --- |" end
 local count, wrong_count = 0, 0
 local function check(ok, name, ...)
@@ -39,7 +39,7 @@ local function difference(a, b)
   return differ, worst
 end
 
--- A still life with every length multiplied by s, moved by m.
+-- A still life with every length multiplied by s, then moved by m.
 local function still_life(s, m)
   local function at(x, y, z) return { x * s + m[1], y * s + m[2], z * s + m[3] } end
   local shiny = glint.material { diffuse = { 0.7, 0.3, 0.2 }, specular = 0.5, shininess = 40 }
@@ -61,7 +61,7 @@ for _, k in ipairs { -40, -20, 20, 40 } do
   local differ = difference(plain, still_life(2.0 ^ k, origin):render(size))
   check(differ == 0, ("S36: scale 2^%d gives the same bits"):format(k), differ .. " pixels differ")
 end
--- A light next to the eye, closer than any length of the scene; and at the eye of a scene of any size.
+-- A light next to the eye, closer than any length of the scene; and a light at the eye, in a scene of any size.
 for _, c in ipairs { { 1e-19, 1 }, { 1e-25, 1 }, { 1e-300, 1 }, { 0, 1 }, { 0, 1e19 }, { 0, 1e-19 }, { 0, 1e60 } } do
   local x, s = c[1], c[2]
   local image = glint.scene {

@@ -6,8 +6,8 @@
 // ---- Two faces ----
 
 /// Two triangles of a convex mesh, and a grazing ray that hits the first one close to the second. Rounding moves the
-/// hit point further from the plane of the first triangle, or of a third one, than the continued ray rises before it
-/// reaches the second.
+/// hit point away from the plane of the first or of a third triangle. It moves further than the continued ray rises
+/// before it reaches the second triangle.
 typedef struct grazing_case {
     const char *what;
     bool mirrors;
@@ -48,8 +48,8 @@ static const grazing_case cases[] = {
         { -0x1.2781502687c06p-8, -0x1.154733fb64eecp-2, -0x1.15ba41f2eb3a4p-2 } } },
 };
 
-/// In a white world the mirror shows all light. The glass does not refract and its depth allows one surface, so it
-/// shows nothing: the second face ends the chain.
+/// In a white world the mirror shows all light. The glass does not refract, and the depth allows one surface, so the
+/// glass shows no light: the second face ends the chain.
 static void check_case(const grazing_case *k)
 {
     static const uint32_t corners[6] = { 0, 1, 2, 3, 4, 5 }, sizes[2] = { 3, 3 };
@@ -79,7 +79,7 @@ static void check_case(const grazing_case *k)
 
 // ---- A box ----
 
-/// A ray from outside towards a seam.
+/// Aims a ray from outside at a seam.
 static hard_ray aim_from_outside(const shell *s, double size)
 {
     hard_ray ray = aim_at_seam(s, size);
@@ -93,7 +93,7 @@ static hard_ray aim_from_outside(const shell *s, double size)
     return ray;
 }
 
-/// A ray from outside, nearly parallel to a face, that hits it close to a seam, before or beyond the seam.
+/// Aims a ray from outside, nearly parallel to a face, that hits the face close to a seam, before or beyond the seam.
 static hard_ray aim_along_face(const shell *s, double size)
 {
     const uint32_t *quad = s->corner[random_bits() % QUADS];
@@ -117,7 +117,7 @@ static hard_ray aim_along_face(const shell *s, double size)
     return ray;
 }
 
-/// The ray as a camera along it would generate it, so that casting it decides as the frame does.
+/// Returns the ray as a camera along it would generate it, so that casting it gives the same decision as the frame.
 static hard_ray as_camera(const hard_ray *ray)
 {
     hard_ray out = *ray;
@@ -132,9 +132,10 @@ static double cosine_at(const hard_ray *ray, const glint_hit *hit)
     return (hit->normal[0] * ray->d[0] + hit->normal[1] * ray->d[1]) + hit->normal[2] * ray->d[2];
 }
 
-/// The length of a unit-direction ray inside the shell, by casting it from both ends, and its error *slack: 16
-/// roundings of the coordinates at each end, divided by the cosine there. Returns false when the ray does not enter
-/// by a front and leave by a back face, as close to a silhouette, or when the error is too large.
+/// Computes the length of a unit-direction ray inside the shell, by casting it from both ends. *slack gets the error
+/// bound of that length: 16 roundings of the coordinates at each end, divided by the cosine there. Returns false when
+/// the error is too large, or when the ray does not enter through a front face and leave through a back face, as
+/// close to a silhouette.
 static bool way_through(const glint_scene *scene, const shell *s, double size, const hard_ray *ray, double *way,
                         double *slack)
 {
@@ -153,9 +154,9 @@ static bool way_through(const glint_scene *scene, const shell *s, double size, c
         *way = hypot(*way, out.point[c] - in.point[c]);
     const double place = 16 * size + fabs(s->middle[0]) + fabs(s->middle[1]) + fabs(s->middle[2]);
     *slack = 16 * 0x1p-53 * place * (1 / -cosine_at(ray, &in) + 1 / cosine_at(ray, &out));
-    // Corners are off by 4 roundings, and a face's plane is below its neighbour's corner by up to five times as much:
-    // rays that rise by less than 40 roundings over half the size may really hit the neighbour. That is a slack of
-    // 0.4 sizes.
+    // Corners are off by 4 roundings, and the plane of a face is below the neighbour's corner by up to five times as
+    // much. So a ray that rises by less than 40 roundings over half the size may really hit the neighbour. That is a
+    // slack of 0.4 sizes.
     return *slack < 0.25 * size;
 }
 

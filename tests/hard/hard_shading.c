@@ -14,7 +14,8 @@ typedef struct reflection_case {
     const char *id, *what;
     bool blinn;
     double shininess, n[3], l[3], v[3];
-    double specular, diffuse; ///< from the list of hard cases, to its digits; NAN: not stated
+    double specular, diffuse; ///< the value that the list of hard cases states, to the digits given there; NAN: not
+        ///< stated
 } reflection_case;
 
 #define Z \
@@ -77,7 +78,7 @@ static const reflection_case cases[] = {
       { -1.5, 0.86602540378443865, 1 },
       NAN,
       0.5 },
-    // grazing light from the front: h is a difference, l + v
+    // grazing light from the front: the terms of the half vector l + v nearly cancel
     { "P15",
       "Blinn, h of length 2e-5",
       true,
@@ -125,14 +126,14 @@ static const reflection_case cases[] = {
 static double allowed(const reflection *want, double shininess, double half)
 {
     if (want->specular == 0)
-        return 0x1p-40; // below this value a highlight is 0
+        return 0x1p-40; // a highlight below this value is 0
     const double y = fabs(want->log2_specular), ln2 = 0.6931471805599453;
     const double tangent = shininess > 0 ? sqrt(expm1(2 * ln2 * y / shininess)) : 0; // from (n.h)^s = 2^-y
     const double turn = tangent * (11 * 0x1p-53) / half;
     return want->specular * (0x1p-23 * (ln2 * 3.75 * y + 3) + shininess * (8 * 0x1p-53 + turn)) + 0x1p-40;
 }
 
-/// The length of l + v for Blinn's highlight, with l and v normalised; infinity for Phong's.
+/// Returns the length of l + v for Blinn's highlight, with l and v normalised; infinity for Phong's highlight.
 static double half_length(bool blinn, const double l[3], const double v[3])
 {
     const double l_length = hypot(hypot(l[0], l[1]), l[2]), v_length = hypot(hypot(v[0], v[1]), v[2]);
@@ -220,7 +221,7 @@ static void check_reflection(const reflection_case *k)
     hard_check(fabs(want.diffuse - k->diffuse) <= 1e-15, "oracle %.17g, stated %.17g", want.diffuse, k->diffuse);
     const double share = compare(k->blinn, k->shininess, k->n, k->l, k->v);
     show(k, &want, share <= 1);
-    for (int turn = 0; turn < 6; turn++) // swapped axes, other lengths
+    for (int turn = 0; turn < 6; turn++) // swaps the axes, and uses vectors of other lengths
         for (int e = -300; e <= 300; e += 150) {
             static const int order[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 },
                                              { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
@@ -264,8 +265,8 @@ static void sweep_shininess(uint64_t count)
 
 // ---- Pixel values ----
 
-/// A row of pixels with these linear values: an orthographic camera sees one sphere per pixel, lit only by ambient
-/// light.
+/// Renders a row of pixels with these linear values: an orthographic camera sees one sphere per pixel, lit only by
+/// ambient light.
 static glint_image *row_of(const double *values, int count)
 {
     static const double one[3] = { 1, 1, 1 }, none[3] = { 0 };
@@ -345,7 +346,7 @@ static void check_row(const char *id, const double *values, int count, glint_tra
 
 static void check_codes(void)
 {
-    // I1; a pixel is a float: values slightly below a half stay there
+    // I1; a pixel is a float, so a value slightly below a half stays there
     const double steps[] = { 0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, 1e30, 0 };
     const int step_codes[] = { 0, 1, 2, 128, 255, 255, 255, 0 };
     check_row("I1", steps, 8, GLINT_TRANSFER_LINEAR, 8, step_codes);
@@ -363,7 +364,7 @@ static void check_codes(void)
             values[i] = glint_srgb_decode((double)same[i] / range);
         }
         check_row("I3", values, count, GLINT_TRANSFER_SRGB, bits, same); // I3: pixel value -> linear -> pixel value
-        for (int i = 0; i < 1024; i++) { // at the steps themselves, and a few floats on each side
+        for (int i = 0; i < 1024; i++) { // the values of the steps themselves, and a few floats on each side
             const double step = glint_srgb_decode(((double)(random_bits() % (unsigned)range) + 0.5) / range);
             values[i] = (double)((float)step * (1 + (float)(int)(random_bits() % 7 - 3) * 0x1p-23f));
         }

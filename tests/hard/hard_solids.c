@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-#define ROUNDING 8 ///< in 2^-53: allowed error of the engine's arithmetic, times the map's condition and the distance
+#define ROUNDING 8 ///< allowed error of the engine's arithmetic in units of 2^-53; the map's condition and the
+    ///< distance multiply it
 
 // ---- Judging ----
 
@@ -135,7 +136,8 @@ typedef struct grazed {
     double radius;
 } grazed;
 
-/// A disk, and a ray that hits its plane at a cosine of 1e-16 .. 1e-2, inside the disk, at its rim or outside.
+/// Makes a disk, and a ray that hits the disk's plane at a cosine of 1e-16 .. 1e-2, inside the disk, at its rim or
+/// outside.
 static grazed graze(void)
 {
     grazed g;
@@ -165,7 +167,7 @@ static grazed graze(void)
 
 static double length_of(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
-/// Compares the engine with the bound. *share: the error of t relative to the bound.
+/// Compares the engine with the bound. *share gets the error of t relative to the error bound.
 static const char *judge_grazed(const grazed *g, bool hit, const glint_hit *got, tally *sum, double *share)
 {
     const truth want = true_plane(&g->ray, &g->plane);
@@ -180,7 +182,7 @@ static const char *judge_grazed(const grazed *g, bool hit, const glint_hit *got,
     }
     *share = 0;
     sum->rays++;
-    // The engine does not decide on which side points so close to the plane are; likewise at the rim.
+    // Points so close to the plane, or so close to the rim, may count for either side.
     if (!want.hit || !(bound < 0.25) || way * want.cosine < 1.01 * 0x1p-50 * places ||
         fabs(from_center - g->radius) < bound * way + 8 * 0x1p-53 * numbers) {
         sum->close++;

@@ -8,7 +8,7 @@
 #define NODES 12
 #define STEP ((quad)1e-12)
 #define PARAMETERS 3
-#define OPERANDS 3 ///< the most operands of these operations
+#define OPERANDS 3 ///< most operands of any of these operations
 
 /// A formula: each node is an operation on earlier nodes; the first nodes are the inputs and constants.
 typedef struct formula {
@@ -92,7 +92,8 @@ static bool is_steep(glint_op op, quad a, quad b, quad c)
     }
 }
 
-/// Computes all nodes. Returns false when one is steep, or far from 1, where differences are inaccurate.
+/// Computes all nodes. Returns false when a node is steep, or when its value is far from 1, where differences are
+/// inaccurate.
 static bool evaluate(const formula *f, const quad *leaves, quad value[LEAVES + NODES])
 {
     memcpy(value, leaves, LEAVES * sizeof *leaves);
@@ -112,7 +113,7 @@ static formula random_formula(void)
     formula f = { .count = 3 + (int)uniform(0, NODES - 3) };
     for (int i = 0; i < f.count; i++) {
         f.op[i] = ops[(size_t)uniform(0, sizeof ops / sizeof *ops)];
-        for (int k = 0; k < OPERANDS; k++) // mostly recent nodes
+        for (int k = 0; k < OPERANDS; k++) // prefers recent nodes
             f.operand[i][k] = uniform(0, 1) < 0.5 && i > 0 ? LEAVES + i - 1 : (int)uniform(0, LEAVES + i);
     }
     return f;
@@ -139,7 +140,7 @@ static glint_program *make_program(const formula *f, const double *numbers, cons
     return program;
 }
 
-/// The derivative by differences with a step. Returns false when there is none.
+/// Computes the derivative by differences with step `step`. Returns false when there is no derivative.
 static bool difference(const formula *f, const quad *leaves, const double *slopes, quad step, quad *out)
 {
     quad more[LEAVES], less[LEAVES], high[LEAVES + NODES], low[LEAVES + NODES];
@@ -174,7 +175,7 @@ static int compare(const formula *f, double *worst)
         if (!evaluate(f, leaves, all) || !difference(f, leaves, slopes, STEP, &want) ||
             !difference(f, leaves, slopes, 1000 * STEP, &wider) || want > 1e4 || want < -1e4 || want - wider > 1e-9 ||
             wider - want > 1e-9)
-            continue; // at or next to a kink
+            continue; // the point is at a kink or next to one
         must(glint_program_evaluate(tangent, inputs, &got, &error), &error);
         must(glint_program_evaluate(program, inputs, &value, &error), &error);
         const double off = fabs(got - (double)want) / (1 + fabs((double)want));

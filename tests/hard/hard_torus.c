@@ -1,18 +1,18 @@
 /// Rays at tori where a quartic is hardest, against 113-bit arithmetic: thin and fat, from far away, tangent, along
-/// the axis, in the equator's plane and across the highest circle. An answer is undecidable when rounding of the
-/// torus's numbers or of the path to it could change it: 8 2^-53 times the condition of its map and the distance
-/// (oracle/oracle_solid.h). All other answers must be right.
+/// the axis, in the equator's plane and across the highest circle. An answer is undecidable when rounding could
+/// change it: rounding of the torus's numbers, or of the path to the torus, by 8 2^-53 times the condition of the
+/// torus's map and the distance (oracle/oracle_solid.h). All other answers must be right.
 #include "tests/hard/oracle/aim_solid.h"
 
 #include <string.h>
 
 #define ROUNDING 8
 
-/// A torus and the axes of its own space: x, y and its axis.
+/// A torus and the axes of the torus's own space: x, y and the axis of rotation.
 typedef struct ring {
     hard_solid solid;
     double axes[3][3];
-    double tube; ///< minor / major
+    double tube; ///< minor radius / major radius
 } ring;
 
 /// Aims a ray at the torus in units of the major radius, with its axis along z.
@@ -20,7 +20,7 @@ typedef void aim_at(const ring *r, double o[3], double toward[3]);
 
 typedef struct class_of {
     const char *name;
-    double least, most; ///< minor / major, log-uniform
+    double least, most; ///< range of minor radius / major radius, which is log-uniform
     aim_at *aim;
     double hits; ///< minimum share of rays that must hit
 } class_of;
@@ -56,7 +56,7 @@ static ring random_ring(const class_of *k)
     return r;
 }
 
-/// A point on the torus and the outward normal there.
+/// Computes a point on the torus and the outward normal there.
 static void place_on(const ring *r, double across, double p[3], double n[3])
 {
     const double around = uniform(0, 6.3);
@@ -92,7 +92,7 @@ static void from_afar(const ring *r, double o[3], double toward[3])
     }
 }
 
-/// Along a tangent at a point, slightly outside or inside the surface, or exactly on it.
+/// Aims along a tangent at a point: slightly outside or inside the surface, or exactly on it.
 static void touching_at(const ring *r, double across, double o[3], double toward[3])
 {
     double n[3], away[3], side[3], off = past(r);
@@ -128,7 +128,7 @@ static void along_axis(const ring *r, double o[3], double toward[3])
 static void in_equator(const ring *r, double o[3], double toward[3])
 {
     const double around = uniform(0, 6.3), off = past(r), way = log_uniform(0.1, 100);
-    const bool touches = chance(0.5); // perpendicular to the direction at the nearest point
+    const bool touches = chance(0.5); // whether the ray is perpendicular to the radius at its nearest point
     const double reach = touches ? 1 + (chance(0.5) ? -1 : 1) * r->tube + off : uniform(0, 1.5);
     const double along = touches ? around + 1.5707963267948966 : uniform(0, 6.3);
     toward[0] = reach * cos(around);
@@ -151,7 +151,7 @@ static const class_of classes[] = {
     { "in the equator's plane", 1e-3, 0.99, in_equator, 0.3 },
 };
 
-/// The ray in world space, rounded.
+/// Returns the ray in world space, rounded.
 static hard_ray ray_of(const ring *r, const double o[3], const double toward[3])
 {
     const glint_shape_desc *d = &r->solid.desc;

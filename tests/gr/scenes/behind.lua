@@ -1,4 +1,4 @@
--- The first generation: normals never turn to the eye, insides and backs have only ambient light, all cast shadows.
+-- The first generation: normals never turn to the eye, insides and backs have only ambient light, all faces shadow.
 white = gr.material({0.9, 0.9, 0.9}, {0.5, 0.5, 0.5}, 10)
 pink = gr.material({0.9, 0.5, 0.6}, {0.5, 0.5, 0.5}, 30)
 

@@ -1,7 +1,7 @@
 -- The first generation: Lua 5.0, models that set globals, faces of any size numbered from 0, transforms in the other order.
 require('readobj')
 require('models/wedge')
-require 'models/wedge.lua' -- a file's name, as in Lua 5.0
+require 'models/wedge.lua' -- the name of a file, as in Lua 5.0
 
 grass = gr.material({0.1, 0.7, 0.1}, {0.0, 0.0, 0.0}, 0)
 hide = gr.material({0.84, 0.6, 0.53}, {0.3, 0.3, 0.3}, 20)

@@ -32,6 +32,6 @@ for i = 1, 8 do
     root:add_child(more)
   end
   if i == 5 then tetra:set_material(other) end
-  if i == 6 then tetra:scale(0, 1, 1) end -- flat: it is gone
+  if i == 6 then tetra:scale(0, 1, 1) end -- flat, so it disappears
   if i == 7 then hand:scale(1, 0.5, 1) end
 end

@@ -1,4 +1,4 @@
--- Materials and lights at their ends: exponents, fall-offs, one light several times, no light at all.
+-- Materials and lights at their limits: exponents, fall-offs, one light several times, no light at all.
 root = gr.node('root')
 for i, shininess in ipairs { 0, 0.1, 1, 25, 900, 5e7 } do
   local ball = gr.sphere('ball' .. i)

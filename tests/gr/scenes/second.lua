@@ -1,4 +1,4 @@
--- The second generation: meshes from .obj files, one of them for several nodes, and a file run by dofile.
+-- The second generation: meshes from .obj files, one of which several nodes share, and a file that dofile runs.
 dofile('models/more.lua')
 
 local gold = gr.material({0.9, 0.8, 0.4}, {0.8, 0.8, 0.4}, 25)

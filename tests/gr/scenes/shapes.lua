@@ -22,7 +22,7 @@ put(root, gr.torus('torus', 0.3), blue, {'rotate', 'x', 50}, {'translate', 0.4, 
 put(root, gr.torus('ring', '0.2', 2), red, {'scale', 0.4, 0.6, 0.5}, {'rotate', 'y', 60}, {'translate', 4, 0.5, 0})
 put(root, gr.nh_box('nh_box', {0, 0, 0}, 1), green, {'scale', -1, 1, -1.5}, {'translate', 0.5, -2, 0})
 
--- A scale above a rotation shears what is below.
+-- A scale above a rotation shears the nodes below.
 local shear = gr.node('shear')
 root:add_child(shear)
 shear:scale(2, 0.5, 1)
@@ -34,7 +34,7 @@ local ball = put(turned, gr.sphere('sheared'), blue, {'scale', 0.7, 0.7, 0.7})
 put(ball, gr.cube('child of a shape'), red, {'scale', 0.8, 0.8, 0.8}, {'translate', 0.6, 0.6, 0.6})
 put(turned, gr.cylinder('sheared'), green, {'scale', 0.2, 0.2, 3}, {'rotate', 'y', -765}, {'translate', -0.5, 1.5, 0})
 
--- Shapes without an extent do not show.
+-- Shapes without an extent are invisible.
 put(root, gr.sphere('flat'), red, {'scale', 3, 0, 3})
 put(root, gr.nh_sphere('point', {0, 0, 0}, 0), red)
 put(root, gr.nh_box('nothing', {0, 0, 0}, 0), red)

@@ -1,4 +1,4 @@
--- Spheres outside any hierarchy: a view as long as the eye is far, numbers as strings, arguments too many.
+-- Spheres outside any hierarchy: a view vector that is not a unit vector, strings as numbers, extra arguments.
 mat1 = gr.material({0.7, 1.0, 0.7}, {0.5, 0.7, 0.5}, 25)
 mat2 = gr.material({"0.5", 0.5, 0.5}, {0.5, 0.7, 0.5}, "25", 0)
 mat3 = gr.material({1.0, 0.6, 0.1}, {0.5, 0.7, 0.5}, 25, 10000000, {1, 2})
@@ -17,14 +17,14 @@ s3 = gr.nh_sphere('s3', {0, -1200, -500}, 1000)
 scene_root:add_child(s3)
 s3:set_material(mat2)
 
-s4 = gr.nh_sphere('s4', {-100, 25, -300}, -50) -- its square counts
+s4 = gr.nh_sphere('s4', {-100, 25, -300}, -50) -- only the square of the radius matters
 scene_root:add_child(s4)
 s4:set_material(mat3)
 
 s5 = gr.nh_sphere('', {0, 100, -250}, 25)
 scene_root:add_child(s5)
 s5:set_material(mat1)
-s5:scale(1.5, 0.5, "1") -- these take transforms, too
+s5:scale(1.5, 0.5, "1") -- these spheres take transforms, too
 s5:translate(0, '60', 0)
 
 white_light = gr.light({-100.0, 150.0, 400.0}, {0.9, 0.9, 0.9}, {1, 0, 0}, 0.5)

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-/// 1 plus or minus a log-uniform number between low and high.
+/// Returns 1 plus or minus a log-uniform number between low and high.
 static double near_one(double low, double high) { return 1 + (chance(0.5) ? -1 : 1) * log_uniform(low, high); }
 
-/// side = a unit vector perpendicular to u
+/// Sets `side` to a unit vector perpendicular to u.
 static void random_side(const double u[3], double side[3])
 {
     double v[3], along, length = 0;
@@ -29,12 +29,12 @@ static void axis(double v[3])
     v[random_bits() % 3] = chance(0.5) ? -1 : 1;
 }
 
-/// Distance of the origin from the centre, in radii.
+/// Returns a random distance of the ray's origin from the centre, in radii.
 static double random_distance(void)
 {
     switch (random_bits() % 6) {
     case 0:
-        return near_one(1e-16, 1e-8); // on the surface or almost
+        return near_one(1e-16, 1e-8); // on the surface, or almost on it
     case 1:
         return near_one(1e-8, 1);
     case 2:
@@ -49,7 +49,7 @@ static double random_distance(void)
 static void random_place(double place[3], double size)
 {
     const double reach = size * log_uniform(1e-3, 1e7);
-    const bool whole = chance(0.3); // differences then stay exact
+    const bool whole = chance(0.3); // with whole numbers, differences are exact
     for (int c = 0; c < 3; c++) {
         place[c] = chance(0.4) ? 0 : uniform(-1, 1) * reach;
         if (whole)
@@ -57,7 +57,7 @@ static void random_place(double place[3], double size)
     }
 }
 
-/// Scales to any length, denormal to huge; sometimes makes components negligible next to the others.
+/// Scales a direction to any length, denormal to huge; sometimes makes components negligible next to the others.
 static void stretch(double d[3])
 {
     const double length = chance(0.2)   ? ldexp(1, -1060 + (int)(random_bits() % 2040))
@@ -86,8 +86,8 @@ void aim_at_sphere(hard_ray *ray, hard_sphere *sphere)
         ray->o[c] = sphere->c[c] - u[c] * away;
     random_side(u, side);
     const double miss = sphere->r * (chance(0.5) ? near_one(1e-16, 1e-2) : uniform(0, 1.2));
-    // Seen from far away: aims at the point of the perpendicular plane through the centre that is `miss` from the
-    // line. From nearby or inside, a random direction.
+    // From far away, the line passes the centre at the distance `miss`. From nearby or inside, the direction is
+    // random.
     const double sine = away > miss ? miss / away : 0, cosine = sqrt(1 - sine * sine);
     for (int c = 0; c < 3; c++)
         ray->d[c] = away > miss ? u[c] * cosine + side[c] * sine : side[c] + u[c] * uniform(-1, 1);
@@ -126,7 +126,7 @@ void aim_at_many(hard_ray *ray, hard_sphere *spheres, int count)
         spheres[i] = spheres[random_bits() % (unsigned)i];
         switch (random_bits() % 4) {
         case 0:
-            break; // identical to the previous one
+            break; // a sphere identical to the previous one
         case 1:
             spheres[i].r = nextafter(spheres[i].r, chance(0.5) ? 0 : HUGE_VAL);
             break;

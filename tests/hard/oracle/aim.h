@@ -4,15 +4,17 @@
 
 #include "tests/hard/oracle/oracle.h"
 
-/// A sphere of size 1e-8 .. 1e8, at the origin or away from it, and a ray at it. Half of the rays pass within 1e-2 ..
-/// 1e-16 of tangency. Origins are far away, near, on and inside the surface. Directions have any length, integer or
-/// nearly vanishing components.
+/// Makes a sphere of size 1e-8 .. 1e8, at the origin or away from it, and a ray at the sphere. Half of the rays pass
+/// within 1e-2 .. 1e-16 of tangency. Origins are far away, near, on and inside the surface. Directions have any
+/// length, integer or nearly vanishing components.
 void aim_at_sphere(hard_ray *ray, hard_sphere *sphere);
 
-/// A plane and a ray. Half of the rays are grazing, at 1e-2 .. 1e-16. Origins are on the plane, near it and far away.
+/// Makes a plane and a ray. Half of the rays are grazing, at 1e-2 .. 1e-16. Origins are on the plane, near it and far
+/// away.
 void aim_at_plane(hard_ray *ray, hard_plane *plane);
 
-/// `count` spheres around one point, concentric with radii a few ulp apart, identical, or separate; and a ray at them.
+/// Makes `count` spheres around one point, concentric with radii a few ulp apart, identical, or separate, and a ray
+/// at the spheres.
 void aim_at_many(hard_ray *ray, hard_sphere *spheres, int count);
 
 #endif

@@ -12,7 +12,7 @@ static glint_transform random_map(double move)
 {
     glint_transform map = glint_transform_identity(), next;
     double axis[3], by[3];
-    for (int i = 0; i < 2; i++) { // scale, rotate, scale, rotate: this shears
+    for (int i = 0; i < 2; i++) { // scale, rotate, scale, rotate: together these shear
         for (int c = 0; c < 3; c++)
             by[c] = (chance(0.2) ? -1 : 1) * log_uniform(0.1, 10);
         next = glint_transform_scale(by);
@@ -27,8 +27,8 @@ static glint_transform random_map(double move)
     return glint_transform_product(&next, &map);
 }
 
-/// A map that undoes the flattening of its shape, a cylinder or cone: the result is about as wide as high, of about
-/// `size`, and rotated.
+/// Returns a map that undoes the flattening of a cylinder or cone: the result is rotated, about `size` large, and
+/// about as wide as high.
 static glint_transform undoing_map(const glint_shape_desc *d, double size)
 {
     double n[3], x[3], away[3], turn[3], length = 0;
@@ -133,12 +133,12 @@ glint_scene *solid_alone(const hard_solid *s, glint_material *material)
 
 // ---- Rays ----
 
-/// A point on or next to the shape as described: on its surface, silhouette, an edge or a corner.
+/// Chooses a point on or next to the shape before its map: on its surface, silhouette, an edge or a corner.
 static void some_point(const hard_solid *s, double p[3])
 {
     const double turn = uniform(0, 6.3),
                  w = chance(0.3)   ? 0
-                     : chance(0.1) ? 1 - log_uniform(1e-8, 1) // on a cone, next to the apex
+                     : chance(0.1) ? 1 - log_uniform(1e-8, 1) // a point on a cone, next to the apex
                                    : uniform(0, 1),
                  v = chance(0.3) ? 0 : uniform(0, 1 - w);
     double k[3], a[3], b[3], along[3];
@@ -196,8 +196,8 @@ static void to_world(const hard_solid *s, double p[3])
             s->desc.transform.m[i][3];
 }
 
-/// A point close to the line from a point of a cone through its apex: beyond the apex, for a ray down the side of the
-/// other nappe of the double cone, or on this side of it.
+/// Chooses a point close to the line from a point of a cone through the apex: on this side of the apex, or beyond it,
+/// for a ray down the side of the other nappe of the double cone.
 static void along_side(const hard_solid *s, const double p[3], double size, double out[3])
 {
     const double way = (chance(0.3) ? -1 : 1) * log_uniform(0.1, 10), nudge = size * log_uniform(1e-9, 0.1);
@@ -205,8 +205,8 @@ static void along_side(const hard_solid *s, const double p[3], double size, doub
         out[c] = s->desc.top[c] + way * (s->desc.top[c] - p[c]) + nudge * uniform(-1, 1);
 }
 
-/// A point at distance `reach` from a point of a torus, along a tangent, so that a ray from there nearly touches the
-/// torus.
+/// Chooses a point on a tangent at a point of a torus, at distance `reach`, so that a ray from there nearly touches
+/// the torus.
 static void beside(const hard_solid *s, const double p[3], double reach, double out[3])
 {
     const glint_shape_desc *d = &s->desc;
@@ -242,7 +242,7 @@ hard_ray solid_aim(const hard_solid *s, double size)
     to_world(s, p);
     to_world(s, q);
     random_direction(away);
-    // points of flat shapes are in one plane
+    // all points of a flat shape are in one plane
     const bool flat = s->is_triangle || s->desc.kind == GLINT_SHAPE_DISK;
     const int way = along || touching ? 0 : flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
     for (int c = 0; c < 3; c++) {
@@ -251,7 +251,7 @@ hard_ray solid_aim(const hard_solid *s, double size)
         ray.o[c] = way == 0 ? q[c] : way == 1 ? far : p[c] + away[c] * reach;
         ray.d[c] = p[c] - ray.o[c];
     }
-    if (chance(0.1)) // along an axis
+    if (chance(0.1)) // a ray along an axis
         for (int c = 0, keep = (int)(random_bits() % 3); c < 3; c++)
             ray.d[c] = c == keep ? ray.d[c] : 0;
     if (ray.d[0] == 0 && ray.d[1] == 0 && ray.d[2] == 0)

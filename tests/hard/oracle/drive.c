@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 bool hard_table;
-static bool listing; ///< whether each test is a line of the table
+static bool listing; ///< whether each test prints a line of the table
 uint64_t hard_rays = 1000000;
 
 static struct {

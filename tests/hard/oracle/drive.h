@@ -15,7 +15,7 @@
 /// Any other argument ends the program. HARD_RAYS in the environment also sets the number of rays.
 void hard_begin(int argc, char **argv);
 extern bool hard_table;
-extern uint64_t hard_rays; ///< default 1e6
+extern uint64_t hard_rays; ///< number of fuzz rays; default 1e6
 
 /// Begins a test: all checks up to the next one belong to it. id: as in the list of hard cases.
 void hard_test(const char *id, const char *what);
@@ -33,11 +33,11 @@ int hard_end(void);
 void hard_list_tests(const char *title);
 /// In tables, prints the heading of lines of values.
 void hard_columns(const char *title);
-/// The values of a line; HARD_BLANK: an empty cell.
+/// An empty cell among the values of a line.
 #define HARD_BLANK (-HUGE_VAL)
 typedef struct hard_values {
-    double truth, in_double, in_float; ///< the oracle's; the engine's
-    double naive_double, naive_float; ///< the textbook's formula
+    double truth, in_double, in_float; ///< the oracle's value; the engine's values in double and float
+    double naive_double, naive_float; ///< the values of the textbook's formula in double and float
 } hard_values;
 void hard_row(const char *id, const char *what, const hard_values *values, bool right);
 
@@ -48,7 +48,7 @@ void random_seed(uint64_t seed);
 double uniform(double low, double high);
 double log_uniform(double low, double high);
 bool chance(double share);
-void random_direction(double v[3]); ///< unit to the last bits
+void random_direction(double v[3]); ///< the length is 1 up to the last bits
 
 // ---- Objects ----
 
@@ -58,14 +58,14 @@ void must(glint_status status, const glint_error *error);
 glint_scene *scene_new(void);
 void scene_light_up(glint_scene *scene, double ambient, const double background[3]);
 void scene_camera(glint_scene *scene, const glint_camera_desc *desc);
-/// The scene holds the only reference to the added objects.
+/// Adds an object to the scene, which holds the only reference to it.
 glint_shape *scene_sphere(glint_scene *scene, const hard_sphere *sphere, glint_material *material);
 glint_shape *scene_plane(glint_scene *scene, const hard_plane *plane, glint_material *material);
 void scene_light(glint_scene *scene, const glint_light_desc *desc);
 
 glint_material *material_new(glint_model model, const double diffuse[3], double specular, double shininess);
 
-/// Creates an empty file with a unique name. The caller removes it. ending: includes the dot.
+/// Creates an empty file with a unique name. The caller removes it. `ending` includes the dot.
 void temporary_file(char path[64], const char *ending);
 
 /// Casts one ray.
@@ -74,9 +74,9 @@ bool cast(const glint_scene *scene, const hard_ray *ray, glint_hit *hit);
 typedef struct frame_desc {
     int width, height;
     glint_precision precision;
-    uint32_t passes; ///< bits 1u << GLINT_PASS_...
-    int threads; ///< 0: one thread
-    const char *isa; ///< NULL: as the environment says, otherwise the best
+    uint32_t passes; ///< mask of the bits 1u << GLINT_PASS_...
+    int threads; ///< number of threads; 0: one thread
+    const char *isa; ///< instruction set; NULL: the one that the environment names, otherwise the best one
 } frame_desc;
 
 /// Returns whether this machine and build can render with an instruction set.

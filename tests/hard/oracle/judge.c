@@ -19,7 +19,8 @@ static double normal_error(const truth *want, const glint_hit *got)
     return error;
 }
 
-/// Outside the range of double, t must overflow or vanish as well; only its range is not checked.
+/// Returns whether t is within the checked range. Outside the range of double, the engine's t must overflow or vanish
+/// as well.
 static bool representable(double t) { return t > 0x1p-960 && t < 0x1p1020; }
 
 static judgement judge(const truth *want, bool hit, const glint_hit *got, bool too_close, double t_allowed_ulp,
@@ -50,10 +51,10 @@ judgement judge_sphere(const hard_ray *ray, const hard_sphere *sphere, const tru
     const bool exact = exact_difference(ray->o, sphere->c);
     const double f[3] = { ray->o[0] - sphere->c[0], ray->o[1] - sphere->c[1], ray->o[2] - sphere->c[2] };
     const double away = length(f), way = want->t * length(ray->d);
-    // Relative change of the distance for half an ulp of d, of r (never more than for d, however short the distance),
-    // and of o - c.
+    // The relative change of the distance by half an ulp of d, of r (never more than by d, however short the
+    // distance), and of o - c.
     const double magnified = (1 + fmin(1, sphere->r / way) + (exact ? 0 : away / way)) / want->cosine;
-    // c = |f|^2 - r^2 comes from an error-free sum rounded to 106 bits: its relative error close to the surface.
+    // c = |f|^2 - r^2 is an error-free sum rounded to 106 bits. This is the relative error of c close to the surface.
     const double last_bits = 0x1p-51 / want->surface;
     const double normal = 8 * 0x1p-53 * (away + sphere->r) / sphere->r / want->cosine;
     return judge(want, hit, got, want->tangency < TANGENCY || (!exact && want->surface < SURFACE),
@@ -64,7 +65,7 @@ judgement judge_plane(const hard_ray *ray, const hard_plane *plane, const truth 
 {
     const double n = length(plane->n), d = length(ray->d);
     double reach = 0, height = 0,
-           climb = 0; // terms of the sums n.(p - o) and n.d, relative to the results
+           climb = 0; // sums of the terms' sizes in n.(p - o) and n.d, relative to the results
     for (int c = 0; c < 3; c++) {
         const double place = fabs(ray->o[c]) + fabs(plane->p[c]), share = fabs(plane->n[c]) / n;
         reach += place;

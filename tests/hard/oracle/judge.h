@@ -10,21 +10,24 @@
 
 typedef enum verdict {
     RIGHT,
-    TOO_CLOSE, ///< within 8 * 2^-53 of tangency, or of the surface where o - c is not exact: either answer is accepted
+    TOO_CLOSE, ///< the ray is within 8 * 2^-53 of tangency, or of the surface where o - c is not exact: either answer
+        ///< is accepted
     WRONG_DECISION,
     WRONG_T,
     WRONG_NORMAL
 } verdict;
 
-#define TANGENCY (8 * 0x1p-53) ///< decisions further away than this, in units of |f| + r, must be right
-#define SURFACE (2 * 0x1p-53) ///< rounding of an inexact o - c, in the same units
+#define TANGENCY (8 * 0x1p-53) ///< largest distance from tangency, in units of |f| + r, at which the engine may
+    ///< decide wrongly
+#define SURFACE (2 * 0x1p-53) ///< rounding error of an inexact o - c, in the same units
 
 extern const char *const verdict_name[];
 
 typedef struct judgement {
     verdict verdict;
     double ulp; ///< error of t, in ulp
-    double t_share; ///< error of t relative to the allowed one: 4 ulp x the magnification of the inputs' rounding
+    double t_share; ///< error of t relative to the allowed error, which is 4 ulp times the magnification of the
+        ///< inputs' rounding
     double normal_share;
 } judgement;
 

@@ -6,7 +6,7 @@
 #include <mpfr.h>
 
 #define BITS 400
-#define BITS_EXACT 9000 ///< 4 x 2098 bits between the smallest and the largest double, plus space for sums
+#define BITS_EXACT 9000 ///< enough bits: 4 x 2098 between the smallest and the largest double, plus space for sums
 
 #define RN MPFR_RNDN
 
@@ -34,7 +34,7 @@ static void set_vector(mpfr_t out[3], const double v[3])
         mpfr_set_d(out[i], v[i], RN);
 }
 
-/// sum = u . v
+/// Computes sum = u . v.
 static void dot(mpfr_t sum, mpfr_t u[3], mpfr_t v[3])
 {
     mpfr_t p;
@@ -47,7 +47,7 @@ static void dot(mpfr_t sum, mpfr_t u[3], mpfr_t v[3])
     mpfr_clear(p);
 }
 
-/// |x| < 2^-k |y|
+/// Returns whether |x| < 2^-k |y|.
 static bool lost(mpfr_t x, mpfr_t y, int k)
 {
     mpfr_t bound;
@@ -60,8 +60,8 @@ static bool lost(mpfr_t x, mpfr_t y, int k)
 
 static double rounded(mpfr_t x) { return mpfr_get_d(x, RN); }
 
-/// a t^2 + 2 b t + c = 0 with a = d.d, b = f.d, c = f.f - r^2; disc = b^2 - a c. Returns false when more bits are
-/// needed.
+/// Sets the equation a t^2 + 2 b t + c = 0 with a = d.d, b = f.d, c = f.f - r^2, and disc = b^2 - a c. Returns false
+/// when more bits are needed.
 static bool set_equation(numbers *k, const hard_ray *ray, const hard_sphere *sphere, int bits)
 {
     set_vector(k->d, ray->d);
@@ -115,7 +115,7 @@ static void sphere_margins(numbers *k, const hard_sphere *sphere, truth *out)
     mpfr_sqr(k->y, k->size, RN);
     mpfr_div(k->y, k->c, k->y, RN); // (|f| - r) / (|f| + r)
     out->surface = fabs(rounded(k->y));
-    mpfr_mul(k->x, k->rr, k->a, RN); // distance of the line: sqrt((r^2 a - disc) / a)
+    mpfr_mul(k->x, k->rr, k->a, RN); // distance of the line from the centre: sqrt((r^2 a - disc) / a)
     mpfr_sub(k->x, k->x, k->disc, RN);
     mpfr_div(k->x, k->x, k->a, RN);
     mpfr_sqrt(k->x, k->x, RN);
@@ -204,7 +204,7 @@ truth oracle_plane(const hard_ray *ray, const hard_plane *plane)
     return out;
 }
 
-/// v = v / |v|
+/// Normalises v.
 static void make_unit(mpfr_t v[3])
 {
     mpfr_t length;
@@ -216,7 +216,8 @@ static void make_unit(mpfr_t v[3])
     mpfr_clear(length);
 }
 
-/// The cosine that the highlight raises to a power: r.v = 2 (n.l)(n.v) - l.v, or n.h. 0 where h is undefined.
+/// Computes the cosine that the highlight raises to a power: r.v = 2 (n.l)(n.v) - l.v, or n.h, or 0 where h is
+/// undefined.
 static void highlight_cosine(mpfr_t out, bool blinn, mpfr_t n[3], mpfr_t l[3], mpfr_t v[3], mpfr_t nl, mpfr_t nv)
 {
     if (!blinn) {

@@ -27,7 +27,7 @@ static void dot_d(mpfr_t sum, const double u[3], const double v[3])
     mpfr_clear(p);
 }
 
-/// Cosine between two vectors of any length.
+/// Computes the cosine between two vectors of any length.
 static void cosine_of(mpfr_t out, const double u[3], const double v[3])
 {
     mpfr_t uu, vv;
@@ -43,7 +43,7 @@ static void cosine_of(mpfr_t out, const double u[3], const double v[3])
 
 // ---- Microfacets ----
 
-/// out = alpha^2 / (sin^2 + alpha^2 cos^2)^2, which is pi D
+/// Computes out = alpha^2 / (sin^2 + alpha^2 cos^2)^2, which is pi D.
 static void ggx(mpfr_t out, mpfr_t alpha, mpfr_t cos2)
 {
     mpfr_t sum;
@@ -72,7 +72,7 @@ double oracle_ggx(double alpha, double angle)
     return taken(out);
 }
 
-/// out = exp(-tan^2 / alpha^2) / (alpha^2 cos^4), which is pi D
+/// Computes out = exp(-tan^2 / alpha^2) / (alpha^2 cos^4), which is pi D.
 static void beckmann_lobe(mpfr_t out, mpfr_t alpha, mpfr_t cos2)
 {
     mpfr_t x, a2;
@@ -89,10 +89,10 @@ static void beckmann_lobe(mpfr_t out, mpfr_t alpha, mpfr_t cos2)
     mpfr_clears(x, a2, (mpfr_ptr)0);
 }
 
-/// sum += Smith's Lambda for a direction of this cosine.
+/// Adds Smith's Lambda for a direction with this cosine to `sum`.
 static void add_lambda(mpfr_t sum, bool beckmann, mpfr_t alpha, mpfr_t cosine)
 {
-    mpfr_t t, x, y; // t: alpha times the tangent
+    mpfr_t t, x, y; // t is alpha times the tangent
     mpfr_inits2(BITS, t, x, y, (mpfr_ptr)0);
     mpfr_sqr(x, cosine, RN);
     mpfr_ui_sub(t, 1, x, RN);
@@ -121,7 +121,7 @@ static void add_lambda(mpfr_t sum, bool beckmann, mpfr_t alpha, mpfr_t cosine)
     mpfr_clears(t, x, y, (mpfr_ptr)0);
 }
 
-/// out = f0 + (1 - f0) (1 - v.h)^5, with (v.h)^2 = (1 + l.v) / 2
+/// Computes out = f0 + (1 - f0) (1 - v.h)^5, with (v.h)^2 = (1 + l.v) / 2.
 static void schlick(mpfr_t out, double f0, mpfr_t lv)
 {
     mpfr_add_ui(out, lv, 1, RN);
@@ -218,7 +218,7 @@ double oracle_cap(double ratio)
     return taken(out);
 }
 
-/// pi r^2 / (d^2 + plus r^2)
+/// Returns pi r^2 / (d^2 + plus r^2).
 static double pi_over(double radius, double distance, unsigned plus)
 {
     mpfr_t r2, d2, out;
@@ -239,8 +239,8 @@ static double pi_over(double radius, double distance, unsigned plus)
 double oracle_disk(double radius, double distance) { return pi_over(radius, distance, 1); }
 double oracle_ball(double radius, double distance) { return pi_over(radius, distance, 0); }
 
-/// Half the angle that a ball on the axis subtends at a point `x` from the axis in the plane, and the angle of its
-/// centre.
+/// Computes half the angle that a ball on the axis subtends at a point of the plane, `x` from the axis, and the angle
+/// of the ball's centre from the axis.
 static void seen_from(mpfr_t x, double radius, double height, mpfr_t half, mpfr_t centre)
 {
     mpfr_t h;
@@ -298,7 +298,7 @@ double oracle_fresnel(double ratio, double cosine)
     mpfr_mul(s, s, r, RN);
     mpfr_ui_sub(s, 1, s, RN);
     mpfr_set_ui(out, 1, RN);
-    if (mpfr_sgn(s) > 0) { // mean of the two polarisations
+    if (mpfr_sgn(s) > 0) { // the mean of the two polarisations
         mpfr_sqrt(s, s, RN);
         mpfr_mul(p, r, c, RN);
         mpfr_sub(q, p, s, RN);

@@ -4,10 +4,10 @@
 #include <math.h>
 
 typedef struct frame_of {
-    quad m[3][3], inverse[3][3], center[3]; ///< x = center + m k
-    quad normals[3][3]; ///< transpose of inverse
+    quad m[3][3], inverse[3][3], center[3]; ///< x = center + m k, for a point k of the unit shape
+    quad normals[3][3]; ///< the transpose of inverse
     quad extent, place; ///< norms of m and center, without cancellation in their sums
-    quad condition; ///< extent times the norm of inverse
+    quad condition; ///< extent times the norm of inverse, the map's condition
 } frame_of;
 
 static quad size_of(quad x) { return x < 0 ? -x : x; }
@@ -56,7 +56,7 @@ static void set_round(frame_of *frame, const quad center[3], const quad along[3]
     }
 }
 
-/// The frame of the shape as described, before its transform.
+/// Computes the frame of the shape as its description says, before its transform.
 static void described(const glint_shape_desc *desc, frame_of *frame)
 {
     quad center[3], along[3];
@@ -77,7 +77,7 @@ static void described(const glint_shape_desc *desc, frame_of *frame)
         return;
     }
     const double radius = is_torus(desc) ? desc->major : desc->radius;
-    if (desc->kind == GLINT_SHAPE_DISK || is_torus(desc)) { // a disk has no height, so any unit serves
+    if (desc->kind == GLINT_SHAPE_DISK || is_torus(desc)) { // a disk has no height, so any unit will do
         const quad length = sqrtf128(dot(along, along));
         for (int c = 0; c < 3; c++)
             along[c] *= radius / length;
@@ -153,7 +153,7 @@ static void add_normals(const glint_shape_desc *desc, const frame_of *frame, con
     const quad moved = (out->most - out->least) * sqrtf128(dot(r->e, r->e)) + margin;
     const quad x = r->f[0] + t * r->e[0], y = r->f[1] + t * r->e[1];
     if (desc->kind == GLINT_SHAPE_CONE && sqrtf128(x * x + y * y) < 16 * margin)
-        return; // the apex
+        return; // the hit is at the apex
     for (int part = 0; part < unit_parts(desc); part++) {
         quad g[3], n[3];
         if (!unit_may_end(desc, part, r, margin, end, grown))
@@ -178,7 +178,8 @@ static void bracket(const unit_span *exact, const unit_span *grown, const unit_s
     out->most = (double)(a < b ? b : a);
 }
 
-/// How far rounding may move each part of the unit shape: 2^-53 times `rounding`, the condition and the reach.
+/// Returns how far rounding may move each part of the unit shape: 2^-53 times `rounding`, the condition and the
+/// reach.
 ///
 /// Let x = c + M k, M = T F: the shape's frame F under its transform T. The engine knows M to a few roundings of the
 /// sums in |T| |F|, each column of F being a few roundings off: nine of them. These move k by |M^-1| |T||F| |k|, the
@@ -213,7 +214,7 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
         out.most += (double)(margin / size_of(r.e[2]));
     }
     if (margin > 1e-3 * (is_torus(desc) ? desc->minor / desc->major : 1) || (desc->kind == GLINT_SHAPE_DISK && size_of(r.f[2]) < 4 * margin))
-        out.close = true; // too imprecise to judge; or in the disk's plane
+        out.close = true; // the result is too imprecise to judge, or the ray is in the disk's plane
     const int end = unit_first_ahead(&s);
     if (out.hit && !out.close)
         add_normals(desc, &frame, &r, margin, &more, end, s.t[end], &out);
@@ -223,7 +224,7 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
 // ---- Triangles ----
 
 /// Returns whether the engine treats a point as in the plane, so that a ray from there does not hit it: n . q is less
-/// than ON_PLANE of the sum of its terms, n = f x g. Rounding is half of that.
+/// than ON_PLANE of the sum of its terms, n = f x g. The rounding error is half of that.
 #define ON_PLANE (17 * (quad)0x1p-53)
 
 static bool is_on_plane(const quad f[3], const quad g[3], const quad n[3], const quad q[3])

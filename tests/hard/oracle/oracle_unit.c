@@ -21,7 +21,7 @@ static void cut_slab(unit_span *s, quad f, quad e, quad low, quad high)
     cut(s, a < b ? a : b, a < b ? b : a);
 }
 
-/// a t^2 + 2 b t + c <= 0
+/// Cuts the span to a t^2 + 2 b t + c <= 0.
 static void cut_quadric(unit_span *s, quad a, quad b, quad c)
 {
     const quad disc = b * b - a * c;
@@ -37,7 +37,7 @@ static void cut_quadric(unit_span *s, quad a, quad b, quad c)
     cut(s, t0 < t1 ? t0 : t1, t0 < t1 ? t1 : t0);
 }
 
-/// x^2 + y^2 <= (z + g)^2 for z >= -g: one nappe of the double cone.
+/// Cuts the span to one nappe of the double cone: x^2 + y^2 <= (z + g)^2 for z >= -g.
 static void cut_cone(unit_span *s, const unit_ray *r, quad g)
 {
     const quad z = r->f[2] + g, ez = r->e[2], huge = (quad)HUGE_VAL;
@@ -59,7 +59,7 @@ static void cut_cone(unit_span *s, const unit_ray *r, quad g)
             s->hit = s->hit && a < 0;
         else
             cut_quadric(s, a, b, c);
-    } else { // steeper than the side: outside between the roots; with z >= 0 only one of the two ends remains
+    } else { // steeper than the side: the ray is outside between the roots; z >= 0 leaves one of the two ends
         const quad root = sqrtf128(disc), q = b > 0 ? -b - root : -b + root, t0 = q / a, t1 = q == 0 ? t0 : c / q;
         if (ez > 0)
             cut(s, t0 < t1 ? t1 : t0, s->t[1]);
@@ -68,7 +68,8 @@ static void cut_cone(unit_span *s, const unit_ray *r, quad g)
     }
 }
 
-/// A disk: a plane offset by g moves the hit point in proportion to g and to the ray's slope along the plane.
+/// Cuts with a disk. A plane that is offset by g moves the hit point in proportion to g and to the ray's slope along
+/// the plane.
 static void cut_disk(unit_span *s, const unit_ray *r, quad g)
 {
     if (r->e[2] == 0) {
@@ -112,8 +113,8 @@ static quad root_between(const quad *coefficient, int degree, quad low, quad hig
     return x;
 }
 
-/// The roots within -reach .. reach, in order, one between neighbouring roots of the derivative where the sign
-/// changes. Returns their number.
+/// Computes the roots within -reach .. reach, in order: one between neighbouring roots of the derivative if the sign
+/// changes. Returns the number of roots.
 static int roots_of(const quad *coefficient, int degree, quad reach, quad *root)
 {
     quad slope[DEGREE], turn[DEGREE + 2];
@@ -221,7 +222,7 @@ void unit_normal(const glint_shape_desc *desc, int part, const unit_ray *r, int 
         n[2] = 1;
     } else if (desc->kind == GLINT_SHAPE_BOX || part == 1) {
         const int axis = desc->kind == GLINT_SHAPE_BOX ? part : 2;
-        n[axis] = (r->e[axis] > 0) == (end == 1) ? 1 : -1; // against the ray where it enters
+        n[axis] = (r->e[axis] > 0) == (end == 1) ? 1 : -1; // the normal points against the ray where the ray enters
     } else {
         const quad round = sqrtf128(k[0] * k[0] + k[1] * k[1]);
         n[0] = k[0] / round;

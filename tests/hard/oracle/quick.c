@@ -1,5 +1,5 @@
-/// Truth in 113 bits, with a bound on its own error: an order of magnitude faster than multiple precision, and
-/// sufficient except for the few rays closer than 2^-46 to a decision.
+/// Truth in 113 bits, with a bound on its own error. It is an order of magnitude faster than multiple precision, and
+/// sufficient except for the few rays that are closer than 2^-46 to the border between hit and miss.
 #include "tests/hard/oracle/oracle.h"
 #include "tests/hard/oracle/quad.h"
 
@@ -79,7 +79,7 @@ truth true_plane(const hard_ray *ray, const hard_plane *plane)
 
 bool exact_difference(const double o[3], const double c[3])
 {
-    for (int i = 0; i < 3; i++) { // Knuth's error of a difference
+    for (int i = 0; i < 3; i++) { // Knuth's error term of a difference
         const double s = o[i] - c[i], v = s - o[i];
         if ((o[i] - (s - v)) - (c[i] + v) != 0)
             return false;

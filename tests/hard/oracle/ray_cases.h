@@ -10,7 +10,8 @@ typedef struct ray_case {
     const char *id, *what;
     hard_ray ray;
     hard_sphere sphere;
-    double t; ///< computed elsewhere with 4096 bits; 0: a miss; NAN: tangent, a hit or a miss
+    double t; ///< t computed elsewhere with 4096 bits; 0: a miss; NAN: a tangent ray, for which hit and miss are both
+        ///< right
 } ray_case;
 
 extern const ray_case ray_cases[];

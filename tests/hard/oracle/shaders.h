@@ -28,7 +28,7 @@ static inline glint_value input_of(glint_builder *b, int input)
     return out;
 }
 
-/// The dot product of two vectors whose inputs start at x and y.
+/// Makes the dot product of two vectors whose inputs start at x and y.
 static inline glint_value product(glint_builder *b, int x, int y)
 {
     glint_value sum = apply(b, GLINT_OP_MUL, input_of(b, x), input_of(b, y));
@@ -37,7 +37,7 @@ static inline glint_value product(glint_builder *b, int x, int y)
     return sum;
 }
 
-/// x^s of Phong's or Blinn's cosine. (l + v)^2 is 2 (1 + l.v).
+/// Makes x^s of Phong's or Blinn's cosine. (l + v)^2 is 2 (1 + l.v).
 static inline glint_value make_strength(glint_model model, glint_builder *b)
 {
     const glint_value nl = product(b, GLINT_INPUT_N_X, GLINT_INPUT_L_X), nv = product(b, GLINT_INPUT_N_X, GLINT_INPUT_V_X),
@@ -59,8 +59,8 @@ static inline glint_value make_wave(bool directional, glint_builder *b)
                        : apply(b, GLINT_OP_ADD, wave, apply(b, GLINT_OP_DIV, input_of(b, GLINT_INPUT_DISTANCE), number_of(b, 16)));
 }
 
-/// The model's formula, times 1.5 + (sin(3 p.x) + sin(world.z)) / 4 + distance / 16, under directional light without
-/// the distance.
+/// Makes a shader: the model's formula times 1.5 + (sin(3 p.x) + sin(world.z)) / 4 + distance / 16. Under directional
+/// light, the factor lacks the distance.
 static inline glint_program *make_shader(glint_model model, bool directional)
 {
     glint_builder *b;

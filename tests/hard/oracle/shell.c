@@ -15,7 +15,7 @@ void make_shell(shell *s, bool ball, double size, double away)
                 p[face % 3] = face < 3 ? 1 : -1;
                 p[(face + 1) % 3] = 2.0 * i / SIDE - 1;
                 p[(face + 2) % 3] = 2.0 * j / SIDE - 1;
-                // one fixed order for both sides, so that seams round identically
+                // the same order of operations for both sides of a seam, so that the seam rounds identically
                 const double length = ball ? sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) : 1;
                 const double lean = 0.1 * (p[0] * shear[0] + p[1] * shear[1] + p[2] * shear[2]);
                 for (int c = 0; c < 3; c++)
@@ -26,7 +26,7 @@ void make_shell(shell *s, bool ball, double size, double away)
             for (uint32_t j = 0; j < SIDE; j++) {
                 const uint32_t at = first + i * (SIDE + 1) + j;
                 const uint32_t round[4] = { at, at + SIDE + 1, at + SIDE + 2, at + 1 };
-                for (int k = 0; k < 4; k++) // the front faces outwards
+                for (int k = 0; k < 4; k++) // turns the front outwards
                     s->corner[q][k] = round[face < 3 ? k : 3 - k];
                 s->size[q++] = 4;
             }

@@ -4,7 +4,7 @@
 
 #include "tests/hard/oracle/drive.h"
 
-#define SIDE 4 ///< quads along an edge of the box
+#define SIDE 4 ///< number of quads along an edge of the box
 #define VERTICES (6 * (SIDE + 1) * (SIDE + 1))
 #define QUADS (6 * SIDE * SIDE)
 
@@ -14,12 +14,12 @@ typedef struct shell {
     double middle[3];
 } shell;
 
-/// A box or ball made of quads that need not be planar, at any position. Both sides of its seams have identical
+/// Makes a box or ball of quads that need not be planar, at any position. The two sides of a seam have identical
 /// coordinates.
 void make_shell(shell *s, bool ball, double size, double away);
 void add_shell(glint_scene *scene, const shell *s, glint_material *material);
 
-/// A ray from inside at a corner, a point on an edge or diagonal, or next to one.
+/// Aims a ray from inside at a corner, at a point on an edge or diagonal, or next to one of these.
 hard_ray aim_at_seam(const shell *s, double size);
 
 #endif

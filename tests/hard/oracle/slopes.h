@@ -1,5 +1,5 @@
-/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one derivative, and its distance from the
-/// truth.
+/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one derivative, and the error of that
+/// derivative.
 #ifndef GLINT_HARD_SLOPES_H
 #define GLINT_HARD_SLOPES_H
 
@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-/// A number of a test's `world` with respect to which a derivative is taken.
+/// A parameter of a test's `world`, with respect to which a derivative is taken.
 typedef struct number {
     const char *object, *field;
     size_t offset;
@@ -17,7 +17,7 @@ typedef struct number {
 
 #define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
 
-#define STEP 1e-12 ///< of central differences, whose error is its square
+#define STEP 1e-12 ///< step of the central differences, whose error is the squared step
 
 static inline void fill(quad out[3], double low, double high)
 {
@@ -46,7 +46,8 @@ static inline void put(double *out, const quad in[3], int count)
         out[c] = (double)in[c];
 }
 
-/// desc: the size, and other fields that differ from the defaults. The caller releases the image.
+/// Renders a picture with one derivative. `desc` has the size, and other fields that differ from the defaults. The
+/// caller releases the image.
 static inline glint_image *slope_picture(const glint_scene *scene, glint_render_desc desc, const glint_derivative *derivative)
 {
     glint_renderer_desc r = glint_renderer_desc_default();
@@ -65,8 +66,9 @@ static inline glint_image *slope_picture(const glint_scene *scene, glint_render_
     return image;
 }
 
-/// The largest distance from `want`, of width * height pixels, relative to the guaranteed error. *most: the steepest
-/// pixel. Pixels are rounded to float; before that, sums in double have an error within 2^-40 of the steepest pixel.
+/// Returns the largest error of the width * height pixels compared with `want`, relative to the guaranteed error
+/// bound. *most gets the largest value of `want`, the steepest pixel. Pixels are rounded to float; before that, sums
+/// in double have an error within 2^-40 of the steepest pixel.
 static inline double slope_distance(const glint_image *image, int width, int height, double (*want)[3], double *most)
 {
     double worst = 0;

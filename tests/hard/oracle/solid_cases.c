@@ -3,8 +3,8 @@
 #include <string.h>
 
 const solid_case solid_cases[] = {
-    // An ulp or two from a face's plane and nearly parallel to it: within rounding the ray is under that face from
-    // the start, and enters by another face, far away.
+    // The ray starts an ulp or two from a face's plane, nearly parallel to it. Within rounding, the ray is under that
+    // face from the start, and enters through another face, far away.
     { "V1", "box, from an ulp beyond a face, along it",
       .ray = { { 0x1.30d5db6811a34p+16, 0x1.62a5baa45b9b6p+15, 0x1.11b94f0656f56p+17 },
                { -0x1.68p-28, -0x1.3e1b40492732ep+17, 0x1.3f0b374d7b92p+18 } },
@@ -20,7 +20,7 @@ const solid_case solid_cases[] = {
                { -0x1.5eaff1fe9994dp-19, 0x1.688c1712b7cc2p-19, 0x1.56p-62 } },
       .kind = GLINT_SHAPE_BOX, .min = { -0x1.a618e87783472p-18, -0x1.24c73ffceb841p-20, -0x1.5c95cf32239e6p-20 },
       .max = { 0x1.646a1aa255eebp-18, 0x1.32d1b73bc93p-19, 0x1.74f31fb7a1afap-18 }, .t = 0.0014619883040935672 },
-    // Flattened in two directions: the elements of the inverse are differences that nearly cancel.
+    // A disk flattened in two directions: the elements of the inverse are differences that nearly cancel.
     { "V4", "disk, flattened to a needle",
       .ray = { { -0x1.83e1b0d22a5b8p+7, 0x1.5ab248a689ee7p+8, -0x1.a455150e67442p+6 },
                { 0x1.6e6e63fc084p-2, -0x1.88e964824e9p+0, 0x1.50079a47ea28p-1 } },
@@ -40,7 +40,7 @@ const solid_case solid_cases[] = {
                { -0x1.b067f0e7ef702p+7, 0x1.9ec883273b9c3p+9, 0x1.9feae59aa4592p+8, 0x0p+0 },
                { -0x1.4c175c62b2f25p+9, 0x1.3b36492f95461p+11, 0x1.3d06c513973e9p+10, 0x0p+0 } },
       .t = 0.011255564900902735 },
-    // Down the side of the other nappe of the double cone: the squares at the ray's origin almost cancel.
+    // A ray down the side of the other nappe of the double cone: the squares at the ray's origin almost cancel.
     { "V6", "cone, down its other half's side",
       .ray = { { 0x1.1603cb690892ap+11, 0x1.036a375d1d3adp+12, 0x1.afe54e0755471p+14 },
                { 0x1.013694758472ep+29, 0x1.5edccac15fe53p+29, -0x1.11486831bc98dp+33 } },
@@ -49,7 +49,7 @@ const solid_case solid_cases[] = {
       .t = 2.0521490628296824e-06 },
     { "V7", "cone, the same, nearer", .ray = { { 1.00001, 0.0001, 3 }, { -1.25, -0.0001, -2.5 } },
       .kind = GLINT_SHAPE_CONE, .base = { 0, 0, 0 }, .top = { 0, 0, 1 }, .radius = 0.5, .t = 0.8000199968006718 },
-    // By hand. Both roots are 0 where the ray is nearest to the apex.
+    // The answer is computed by hand. Both roots are 0 where the ray is nearest to the apex.
     { "V8", "cone, along its axis, from afar", .ray = { { 0, 0, 10 }, { 0, 0, -1 } }, .kind = GLINT_SHAPE_CONE,
       .base = { 0, 0, 0 }, .top = { 0, 0, 1 }, .radius = 0.5, .t = 9 },
     { "V9", "cone, along its axis, from near by", .ray = { { 0, 0, 1.25 }, { 0, 0, -0.5 } }, .kind = GLINT_SHAPE_CONE,

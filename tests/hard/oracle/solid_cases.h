@@ -8,8 +8,8 @@ typedef struct solid_case {
     const char *id, *what;
     hard_ray ray;
     glint_shape_kind kind;
-    double center[3], normal[3], base[3], top[3], radius, min[3], max[3]; ///< as far as the kind has them
-    double map[3][4]; ///< all 0: the identity
+    double center[3], normal[3], base[3], top[3], radius, min[3], max[3]; ///< the fields that the kind of solid has
+    double map[3][4]; ///< the map; all 0: the identity
     double t;
 } solid_case;
 

@@ -48,18 +48,18 @@ hard_still still_random(double scale, double away)
         for (int c = 0; c < 3; c++)
             s.spheres[i].c[c] = at[c] + scale * uniform(-3, 3);
     }
-    if (chance(0.5)) { // a ground that the first sphere touches
+    if (chance(0.5)) { // adds a ground that the first sphere touches
         const double r = scale * log_uniform(1e2, 1e6);
         s.spheres[s.count] =
             (hard_sphere) { { s.spheres[0].c[0], s.spheres[0].c[1] - s.spheres[0].r - r, s.spheres[0].c[2] }, r };
         s.paint[s.count++] = random_paint();
     }
-    if (chance(0.3)) { // a room around the eye
+    if (chance(0.3)) { // adds a room around the eye
         s.spheres[s.count] = (hard_sphere) { { at[0], at[1], at[2] }, scale * log_uniform(20, 1e4) };
         s.paint[s.count++] = random_paint();
     }
     random_direction(lamp);
-    const double far = scale * log_uniform(1, 300); // inside or outside the room
+    const double far = scale * log_uniform(1, 300); // the light is inside or outside the room
     do
         random_direction(side);
     while (fabs(side[1]) > 0.9); // the textbook's camera has a fixed up vector

@@ -7,7 +7,7 @@
 #define STILL_MAX 16
 
 typedef struct still_paint {
-    double diffuse[3], specular, shininess; ///< Phong
+    double diffuse[3], specular, shininess; ///< parameters of Phong's model
 } still_paint;
 
 typedef struct hard_still {
@@ -22,9 +22,9 @@ typedef struct hard_still {
 
 /// A tracer's result for one pixel.
 typedef struct still_pixel {
-    int object; ///< counted from 1; 0: background
-    bool lit; ///< whether the light reaches it and shines on its front
-    double color[3]; ///< linear
+    int object; ///< object that the pixel shows, counted from 1; 0: background
+    bool lit; ///< whether the light reaches the point and shines on its front
+    double color[3]; ///< linear light
 } still_pixel;
 
 /// The textbook's tracer: (-b +- sqrt(b^2 - 4ac)) / 2a, p = o + t d, n = (p - c) / r, shadows beyond an epsilon. In
@@ -34,12 +34,13 @@ still_pixel still_trace_113(const hard_still *still, int width, int height, int 
 still_pixel still_trace_53(const hard_still *still, int width, int height, int x, int y);
 still_pixel still_trace_24(const hard_still *still, int width, int height, int x, int y);
 
-/// A heap of spheres of about the size `scale` within `away` of the origin, sometimes on a ground, in a room, or both.
+/// Makes a heap of spheres of about the size `scale` within `away` of the origin, sometimes on a ground, in a room,
+/// or both.
 hard_still still_random(double scale, double away);
 
-/// The same scene for the engine.
+/// Makes the same scene for the engine.
 glint_scene *still_scene(const hard_still *still);
-/// From an image with the passes beauty, diffuse and object_id.
+/// Reads a pixel of an image with the passes beauty, diffuse and object_id.
 still_pixel still_engine_pixel(const glint_image *image, int x, int y);
 
 #endif

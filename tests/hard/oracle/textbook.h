@@ -1,5 +1,5 @@
-// A textbook's tracer in one arithmetic. Define before including it: REAL, T(name), SQRT, POW, TAN, EPSILON (of a
-// shadow ray, whose whole length is 1).
+// A textbook's ray tracer for one floating-point type. Define before including it: REAL, T(name), SQRT, POW, TAN, and
+// EPSILON, the smallest t of an occluder on a shadow ray, whose whole length is 1.
 
 typedef struct T(vec) {
     REAL x, y, z;
@@ -17,7 +17,7 @@ static T(vec) T(cross)(T(vec) a, T(vec) b)
     return (T(vec)) { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
 }
 
-/// The nearest root above `epsilon`; 0: none.
+/// Returns the nearest root above `epsilon`; 0 for none.
 static REAL T(meet)(const hard_sphere *sphere, T(vec) o, T(vec) d, REAL epsilon)
 {
     const T(vec) f = T(sub)(o, T(vec_of)(sphere->c));
@@ -52,7 +52,7 @@ static bool T(in_shadow)(const hard_still *still, T(vec) p, T(vec) to_light)
     return false;
 }
 
-/// The ray through the centre of a pixel; row 0 is at the top.
+/// Returns the ray through the centre of a pixel; row 0 is at the top.
 static T(vec) T(view_ray)(const hard_still *still, int width, int height, int x, int y)
 {
     const T(vec) forward = T(unit)(T(sub)(T(vec_of)(still->at), T(vec_of)(still->eye)));

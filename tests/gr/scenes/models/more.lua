@@ -1,4 +1,4 @@
--- Run by a scene through dofile.
+-- A scene runs this file through dofile.
 function ball(name, material, x, y, z)
   local s = gr.sphere(name)
   s:set_material(material)

@@ -1,4 +1,4 @@
--- The first generation again: readobj, a model fetched by require, a table read from a file, math of old.
+-- The first generation again: readobj, a model fetched by require, a table read from a file, old math functions.
 require('readobj')
 require('parts/data')
 local v, f = readobj('parts/crate.obj')

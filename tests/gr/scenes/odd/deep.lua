@@ -1,4 +1,4 @@
--- A fractal of shared nodes: eight levels, each twice in the next, 256 places of one ball and its children.
+-- A fractal of shared nodes: eight levels, each used twice in the next, so 256 copies of one ball and its children.
 local bark = gr.material({0.5, 0.35, 0.2}, {0.1, 0.1, 0.1}, 10)
 local leaf = gr.material({0.2, 0.6, 0.2}, {0.3, 0.3, 0.3}, 20)
 local tip = gr.nh_sphere('leaf', {0, 0.35, 0}, 0.3)

@@ -1,4 +1,4 @@
--- Shapes that carry shapes, and a material given late, again and by function.
+-- Shapes that carry shapes, and a material that is set late, set again, and set by a function.
 local function paint(...) for _, n in ipairs({...}) do gr.set_material(n, gr.material({0.2, 0.2, 0.9}, {0, 0, 0}, 1)) end end
 body, head, hat, arm = gr.sphere('body'), gr.sphere('head'), gr.cone('hat'), gr.cube('arm')
 body:add_child(head) head:add_child(hat) body:add_child(arm) body:add_child(arm)

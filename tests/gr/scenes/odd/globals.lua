@@ -1,4 +1,4 @@
--- A scene that takes names that others need.
+-- A scene that overwrites global names that other code needs.
 type, pairs, table, string, print, error = nil, nil, {1, 2, 3}, 'text', 0, {}
 x, y, z, node, mesh, check = 1, 2, 3, 4, 5, 6
 local m = gr.material({0.5, 0.5, 0.9}, {0.5, 0.5, 0.5}, 33)

@@ -1,4 +1,4 @@
--- No fall-off, a strange one, one light twice, one in a ball, one behind all, and words that are not looked at.
+-- Lights: without fall-off, with an odd one, used twice, in a ball, behind everything, with ignored arguments.
 local white = gr.material({0.7, 0.7, 0.7}, {0.6, 0.6, 0.6}, 50, 'shiny', nil, {})
 local root = gr.node('root', 'ignored')
 local floor = gr.nh_box('floor', {-20, -41, -20}, 40, true)

@@ -1,4 +1,4 @@
--- Maps that turn space inside out, one in the other.
+-- Maps that turn space inside out, one inside the other.
 local a = gr.material({0.7, 0.4, 0.5}, {0.6, 0.6, 0.6}, 15)
 local root = gr.node('root')
 local left = gr.node('left')

@@ -1,4 +1,4 @@
--- Invisible objects: flattened, of no size, empty groups, below a group of scale 0; and one ball.
+-- Invisible objects (flattened, without size, in a group of scale 0), empty groups, and one visible ball.
 local m = gr.material({0.9, 0.8, 0.2}, {0.2, 0.2, 0.2}, 5)
 local root, dead = gr.node('root'), gr.node('dead')
 local flat, speck, ball = gr.sphere('flat'), gr.nh_sphere('speck', {0, 0, 0}, 0), gr.sphere('ball')

@@ -1,4 +1,4 @@
--- obj files by many roads; the second generation.
+-- .obj files found by many kinds of paths; the second generation.
 local mat = gr.material({0.2, 0.6, 0.7}, {0.4, 0.4, 0.4}, 30)
 local root = gr.node('root')
 local where = {'models/tetra.obj', '../models/tetra.obj', './parts/crate.obj', 'parts/../parts/crate.obj'}

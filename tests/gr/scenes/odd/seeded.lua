@@ -1,4 +1,4 @@
--- A heap by chance, with a seed; random numbers of all three kinds.
+-- A random heap, with a seed; all three forms of math.random.
 math.randomseed(12.75)
 local root = gr.node('heap')
 local kinds = {'sphere', 'cube', 'cone', 'cylinder'}

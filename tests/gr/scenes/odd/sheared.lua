@@ -1,4 +1,4 @@
--- Turns between stretches make shears; each round shape under one, in deep groups, its back to the light too.
+-- Rotations between stretches make shears: each round shape under a shear, in deep groups, some lit from behind.
 local m = gr.material({0.8, 0.5, 0.3}, {0.5, 0.5, 0.5}, 18)
 local root = gr.node('root')
 local makers = {gr.sphere, gr.cylinder, gr.cone, gr.cube}

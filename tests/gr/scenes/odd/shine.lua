@@ -1,4 +1,4 @@
--- Highlights from none to needles, and colours beyond one.
+-- Highlights from none to very narrow, and colours above one.
 local root = gr.node('root')
 for i, s in ipairs({0, 0.1, 1, 10, 1000, 5e7}) do
   local ball = gr.nh_sphere('ball', {(i - 1) % 3 * 2.2 - 2.2, i > 3 and -1.1 or 1.1, 0}, 1)

@@ -1,4 +1,4 @@
--- Numbers as text wherever they are taken.
+-- Numbers as strings wherever gr accepts numbers.
 m = gr.material({'0.3', 0.5, '7e-1'}, {'.5', '.5', '.5'}, '20')
 s = gr.nh_sphere('s', {'0', '0.5', '-1'}, '1.25')
 b = gr.nh_box('b', {'-2', -1, '-1'}, 1)

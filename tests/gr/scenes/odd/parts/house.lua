@@ -1,4 +1,4 @@
--- A part that needs a part.
+-- A part that requires another part.
 require 'parts/roof'
 wall = gr.material({0.8, 0.75, 0.6}, {0.1, 0.1, 0.1}, 4)
 house = gr.node('house')
