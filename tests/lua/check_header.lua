@@ -3,7 +3,7 @@
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 
--- The declarations of the header, each with its first line and whether a comment documents it.
+-- Returns the declarations of the header, each with its first line and whether a comment documents it.
 local function declarations(path)
   local list, explained, depth, open = {}, false, 0, nil
   local number = 0

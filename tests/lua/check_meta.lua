@@ -61,7 +61,7 @@ end
 local root = arg[0]:match "^(.*)/tests/[^/]*$" or "."
 local classes, functions = read_meta(filled(root .. "/bindings/meta/glint.lua"))
 
--- The module's table.
+-- Checks the module's table.
 local values = all_fields(classes, "glint")
 for name, value in pairs(glint) do
   if name:sub(1, 1) == "_" then
@@ -77,7 +77,7 @@ for name in pairs(functions) do
 end
 for name in pairs(values) do check(glint[name] ~= nil, "glint.%s is described, but not there", name) end
 
--- The objects.
+-- Checks the objects.
 local registered = glint._fields()
 for kind, members in pairs(registered) do
   local class = classes["glint." .. kind]

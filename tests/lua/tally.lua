@@ -1,9 +1,9 @@
--- Shared by the Lua tests: the module's path, counted checks, and the line of totals that run.sh reads.
+-- Shared by the Lua tests: sets the module's path, counts checks, and prints the totals that run.sh reads.
 package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 
 local tally = { passed = 0, failed = 0 }
 
--- Counts a check. A failed check prints the formatted message and its line.
+-- Counts a check. A failed check prints the formatted message and the check's line.
 function tally.check(ok, format, ...)
   if ok then
     tally.passed = tally.passed + 1

@@ -1,5 +1,5 @@
 -- Adaptive sampling: every pixel equals the picture with all samples or the picture with one, as the rule chooses,
--- across tile borders too; and identical pictures in every configuration.
+-- also across tile borders; and identical pictures in every configuration.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -117,7 +117,7 @@ for y = 0, HEIGHT - 1 do
 end
 check(darker < brighter, "what is shown dark differs less: %d and %d pixels", darker, brighter)
 
--- With a tiny threshold, pixels with differing neighbours have all samples; the others look the same anyway.
+-- With a tiny threshold, pixels with differing neighbours take all samples. The other pixels look the same anyway.
 do
   local _, picture, all = compare("next to nothing", scene_of "plain", 1e-9)
   local differ = 0

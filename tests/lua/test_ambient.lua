@@ -1,12 +1,12 @@
 -- Patterns as a material's ambient reflectance: closed forms, comparison with constants of the same value in every
--- configuration, and light that glowing surfaces send to others.
+-- configuration, and the light of glowing surfaces on other surfaces.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 local tests = {}
 
-local ROUNDING <const> = 2 ^ -23 -- of a float32 near 1
-local LOSS <const> = 2 ^ -20 -- light that dropped weak rays may carry
+local ROUNDING <const> = 2 ^ -23 -- rounding error of a float32 near 1
+local LOSS <const> = 2 ^ -20 -- largest error: the light that dropped weak rays may carry
 local PASSES <const> = "beauty,ambient,diffuse,specular,indirect,mirror"
 
 -- A pattern of one colour that the tracer cannot recognise as constant.
@@ -34,7 +34,7 @@ function tests.it_is_the_number_at_each_point()
       check(image:pixel(x, x, "diffuse") == 0)
     end
   end
-  -- NaN and negative values become 0. A pattern without inputs equals its numbers.
+  -- NaN and negative values become 0. A pattern without inputs equals a constant.
   check(floor_picture(glint.material { ambient = glint.pattern(function(p) return -1 + 0 * p.x end) }):pixel(1, 1) == 0)
   check(floor_picture(glint.material { ambient = glint.pattern(function() return 0.5 end) }):pixel(1, 1) == 0.25)
   local material = glint.material { diffuse = even { 0.5, 0.5, 0.5 } }
@@ -87,7 +87,7 @@ function tests.it_is_a_number_by_every_way_to_shade()
     compare(kind .. ", four samples", kd, { render = { samples = 4 } }, ROUNDING)
     compare(kind .. ", adaptive", kd, { render = { samples = 4, adaptive = 0.1 } }, ROUNDING)
     compare(kind .. ", float", kd, { render = { precision = "float" } }, ROUNDING)
-    compare(kind .. ", indirect", kd, { indirect = { samples = 4, bounces = 2 } }, 8 * LOSS) -- more dropped rays
+    compare(kind .. ", indirect", kd, { indirect = { samples = 4, bounces = 2 } }, 8 * LOSS) -- these drop more rays
     compare(kind .. ", no bounces", kd, { indirect = { samples = 4, bounces = 0 } }, ROUNDING)
   end
 end
@@ -105,7 +105,7 @@ function tests.it_lights_others()
   near(image:pixel(0, 0), 0.8 * glow / 2, 2e-3, "half of the sky glows")
 end
 
--- A changed number in the pattern reruns the stages that read it. The picture equals a fresh renderer's.
+-- A changed number in the pattern reruns the stages that read it. The picture equals one from a fresh renderer.
 function tests.a_changed_number_shows()
   local k = 0.25
   local material = glint.material { diffuse = 0.5, ambient = glint.pattern(function(p) return k + 0 * p.x end) }

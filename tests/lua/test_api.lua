@@ -114,7 +114,7 @@ function tests.colors()
   end
   m.diffuse = "#f0A"
   check(close(1, 0, 0.40197777983219577), "#f0A: %s", m.diffuse)
-  m.diffuse = "rebeccapurple" -- 102, 51, 153
+  m.diffuse = "rebeccapurple" -- rgb(102, 51, 153)
   check(close(0.13286832155381798, 0.033104766570885055, 0.31854677812509186), "rebeccapurple: %s", m.diffuse)
   for _, name in ipairs { "aliceblue", "white", "yellowgreen", "lightgoldenrodyellow", "black", "red", "Tomato" } do
     check(pcall(function() m.diffuse = name end), "colour %s", name)
@@ -316,7 +316,7 @@ function tests.polygon_lights()
   raises("polygon_light.vertices: convex polygon expected, got corner 4 outside of the edge from corner 2",
     function() polygon({ 0, 0, 0 }, { 4, 0, 0 }, { 1, 0, 1 }, { 0, 0, 4 }) end)
   raises("polygon_light.vertices: convex polygon expected, got corner 4 outside of the edge from corner 1", function()
-    local star = {} -- with five corners
+    local star = {} -- a star with five corners
     for i = 0, 4 do star[i + 1] = { math.cos(i * 4 * math.pi / 5), math.sin(i * 4 * math.pi / 5), 0 } end
     glint.polygon_light { vertices = star }
   end)

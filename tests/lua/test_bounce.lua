@@ -4,8 +4,8 @@ local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
-local LOSS = 2 ^ -20 -- light that dropped weak rays may carry
-local ROUNDING = 2 ^ -23 -- of a float32 near 1
+local LOSS = 2 ^ -20 -- largest error: the light that dropped weak rays may carry
+local ROUNDING = 2 ^ -23 -- rounding error of a float32 near 1
 
 local function material(fields)
   fields.diffuse = fields.diffuse or 0
@@ -36,7 +36,7 @@ end
 -- ---- Paths: a light of radius 1e-6 is where the ray must end --------------------------------------------------------
 
 -- Polar angles are measured from +z towards +x in the plane y = 0. The ray leaves the ball of radius 2 at the angle
--- `leaves` in the direction `goes`. objects: the scene.
+-- `leaves` in the direction `goes`. objects: the scene's objects.
 local function comes_out(name, eye, direction, objects, leaves, goes)
   local function at(angle, length) return length * math.sin(angle), length * math.cos(angle) end
   local x, z = at(leaves, 2)
@@ -58,7 +58,7 @@ for _, n in ipairs { { 1.5, 1.2 }, { 1.2, 1.5 }, { 1.5, 1.5 }, { 1.33, 1 } } do
     local leaves = i1 + 2 * (i2 - r1) + pi - 2 * r2
     local outer, inner = ball(2, glass(n[1])), ball(1, glass(n[2]))
     comes_out(("ball of %g in %g at %g"):format(n[2], n[1], b), { b, 0, 9 }, { 0, 0, -1 }, { outer, inner }, leaves, leaves + i1)
-    local s = asin(b) -- also with the eye inside both
+    local s = asin(b) -- also tests with the eye inside both balls
     leaves = pi - s + asin(n[2] * b / n[1]) - asin(n[2] * b / n[1] / 2)
     if n[2] * b / n[1] < 1 then
       comes_out(("eye in ball of %g in %g at %g"):format(n[2], n[1], b), { b, 0, 0 }, { 0, 0, -1 }, { inner, outer }, leaves,
@@ -107,7 +107,7 @@ do -- energy: in a white world mirrors, glass and nested balls neither lose nor 
   for name, objects in pairs(furnace) do
     local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, 4 }, at = { 0, 0, 0 }, fov = 40 }, background = 1 }
     for _, object in ipairs(objects) do scene:add(object) end
-    local nested = name == "glass in glass" -- rays double at every surface: more light remains at the ends of chains
+    local nested = name == "glass in glass" -- two rays at every surface: chains end with more light
     local image = scene:render { width = 24, height = 24, output = "none", max_depth = nested and 14 or 300 }
     local least, most = math.huge, -math.huge
     for y = 0, 23 do
@@ -140,7 +140,7 @@ do -- total reflection does not cross the surface: a prism applies `transmission
   near(seen(glass(1.4, { transmission = 0.5 })), 0.25, off, "below the critical angle, two surfaces as well")
   local red, green, blue = select(2, seen(glass(1.5, { transmission = { 0.5, 0, 1 } }))):pixel(0, 0)
   check(math.abs(red - 0.25) <= off and green == 0 and math.abs(blue - 1) <= off, "each channel its own: %g %g %g", red, green, blue)
-  -- The rest bounces between the legs: a + r a r' + ..., with each leg's r.
+  -- The rest of the light bounces between the legs: a + r a r' + ..., where r and r' are the legs' reflectances.
   local both = seen(glass(1.5, { transmission = 0.5, mirror = 0.2 }))
   near(both, 0.2 + (0.25 + 0.2 * 0.25) / (1 - 0.2 ^ 2), off, "a mirror beside it")
   near(seen(glass(1.5, { transmission = 0.5, fresnel = true })), 0.04 + (0.48 ^ 2 + 0.04 * 0.48 ^ 2) / (1 - 0.04 ^ 2), off, "and with fresnel")
@@ -149,7 +149,7 @@ do -- total reflection does not cross the surface: a prism applies `transmission
   near(look({ -0.5, 0, 0 }, { 1, 1, 0 }, { guide }, { background = 1, max_depth = 6 }), 0, 0, "seven surfaces are needed")
 end
 
-do -- absorption by path length inside, and in shadows: transmission twice, and absorption along a diameter
+do -- absorption by the path length inside; in shadows, transmission twice, and absorption along a diameter
   local dense = glass(1, { transmission = 0.9, absorption = { 0.5, 0, 2 } })
   local through = 0.81 * math.exp(-0.5 * 2 * 1.5)
   near(look({ 0, 0, 9 }, { 0, 0, -1 }, { ball(1.5, dense) }, { background = 1 }), through, ROUNDING, "absorption")
@@ -205,7 +205,7 @@ end
 do -- any shape of glass: absorption depends on the path to the exit, reflection on the change of index there
   local a = { 0.5, 0, 2 }
   local function wall(ior) return material { transmission = 0.25, ior = ior or 1, absorption = a, ambient = 0.5 } end
-  local function cube(of, turn) -- a cube from -1 to 1; turn: faces point inwards
+  local function cube(of, turn) -- a cube from -1 to 1; with turn, the faces point inwards
     local faces = { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } }
     local vertices = {}
     for i = 0, 7 do vertices[i + 1] = { (i & 1) * 2 - 1, (i >> 1 & 1) * 2 - 1, (i >> 2 & 1) * 2 - 1 } end
@@ -250,7 +250,7 @@ do -- any shape of glass: absorption depends on the path to the exit, reflection
 end
 
 -- Absorption along the light's path as well: the light in the same glass as the lit point, in another glass, or only
--- the point in glass. Beer's law gives exp(-absorption x path inside). The path from the eye is absorbed first.
+-- the point in glass. Beer's law gives exp(-absorption x path inside). The path from the eye absorbs first.
 do
   local a = { 0.5, 0, 2 }
   local function dense(share) return material { transmission = share or 1, ior = 1, absorption = a } end
@@ -274,7 +274,7 @@ do
     { floor(white), ball(9, dense()), lamp({ 3, 4, 0 }, { attenuation = { 1, 0, 1 } }) })
   lit("many samples of a small light", 1 + 2.5, 1, eye, down,
     { floor(white), ball(5, dense()), glint.sphere_light { position = { 0, 2.5, 0 }, radius = 1e-9, samples = 4 } })
-  lit("the glass itself, from inside", 1 + 3, 0.5, { 0, 2, 0 }, down, -- its lower side, at y = 1
+  lit("the glass itself, from inside", 1 + 3, 0.5, { 0, 2, 0 }, down, -- the lower side of the glass, at y = 1
     { glint.box { min = { -9, 1, -9 }, max = { 9, 9, 9 }, material = material { transmission = 1, ior = 1, absorption = a, diffuse = 0.5 } },
       lamp { 0, 4, 0 } })
   lit("another ball in the way, clear", 1 + 3 - 1, 0.25, eye, down,
@@ -303,7 +303,7 @@ local function pool(absorption, more)
 end
 local A = { 0.2, 0.05, 0.7 }
 
-do -- only the eye's own path: mirrors and glass absorb further on; a light without shadows is not absorbed
+do -- only on the eye's own path: mirrors and glass absorb further on; a light without shadows is not absorbed
   local fields = { width = 40, height = 30, output = "none", passes = "depth,beauty," .. table.concat(TERMS, ",") }
   local clear, dense = pool(0):render(fields), pool(A):render(fields)
   local worst, sums = 0, 0
@@ -496,7 +496,7 @@ for _, samples in ipairs { 1, 3 } do
         shown, changed = shown + (is_shown and 1 or 0), changed + ((is_shown or equal) and 0 or 1)
       end
     end
-    local most = name == "glass" and 400 or samples > 1 and 40 or 0 -- its shadow; pixels that partly show the ball
+    local most = name == "glass" and 400 or samples > 1 and 40 or 0 -- the ball's shadow, and its edges
     check(shown > 300 and changed <= most, "%s, %d samples: of %d other pixels %d changed", name, samples, 130 * 90 - shown, changed)
   end
 end

@@ -1,11 +1,11 @@
--- Cameras given in pixels and by a matrix: projected points against projections computed here.
+-- Cameras given in pixels and by a matrix: projected points against projections that this test computes.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 
 local tests = {}
 
--- A camera as OpenCV defines it: for a world point, R p + t, then fx x / z + cx and fy y / z + cy.
+-- A camera as OpenCV defines it maps a world point p to R p + t, and this to fx x / z + cx and fy y / z + cy.
 local R = { { 0.8, 0, -0.6 }, { 0.36, 0.8, 0.48 }, { 0.48, -0.6, 0.64 } }
 local T = { 0.3, -0.2, 7 }
 local MATRIX = { { 0.8, 0, -0.6, 0.3 }, { 0.36, 0.8, 0.48, -0.2 }, { 0.48, -0.6, 0.64, 7 } }
@@ -25,7 +25,7 @@ end
 
 local POINTS = { { 0, 0, 0 }, { 1.2, 0.5, -0.3 }, { -1, -1.5, 0.4 }, { 0.2, -0.9, 2 }, { 2.5, 1, 1 } }
 
--- The mean of the pixels that show a small ball; nil when none does.
+-- Returns the mean position of the pixels that show a small ball; nil when no pixel does.
 local function middle(image)
   local sum, x_sum, y_sum = 0, 0, 0
   for y = 0, image.height - 1 do
@@ -51,7 +51,7 @@ function tests.balls_are_where_their_points_are()
   end
 end
 
--- camera:project against the projection computed here, at two sizes.
+-- Compares camera:project with the projection that this test computes, at two sizes.
 function tests.points_are_projected()
   for scale = 1, 8, 7 do
     for _, p in ipairs(POINTS) do
@@ -63,7 +63,7 @@ function tests.points_are_projected()
   end
 end
 
--- The hit of a pixel's centre, projected again, gives that centre and the depth of the pass.
+-- Projects the hit at a pixel's centre: the result is that centre and the depth of the pass.
 function tests.hits_are_projected_to_their_pixels()
   for _, fields in ipairs { {}, { projection = "orthographic", height = 5 }, { pixel_offset = 0.25 }, { aperture = 0.2, focus = 5 } } do
     fields.eye, fields.at = { 1, 2, 6 }, { 0, 0.5, 0 }
@@ -105,7 +105,7 @@ function tests.points_that_are_not_projected()
   raises("project.height: number expected, got no value", view, { 0, 0, 0 }, 4)
 end
 
--- The hit of a pixel's ray on a plane, projected again, is at the pixel's centre.
+-- Projects the hit of a pixel's ray on a plane: the result is the pixel's centre.
 function tests.rays_go_through_their_pixels()
   local scene = glint.scene { camera = camera(), glint.plane { point = { 0, 0, -1 }, normal = { 0, 0, 1 } } }
   local image = scene:render { width = 64, height = 48, passes = "depth" }
@@ -140,7 +140,7 @@ function tests.meshes_are_seen_as_by_rays()
   end
 end
 
--- The fx of a field of view, with a centred principal point, gives the camera with that field of view.
+-- A camera with the fx of a field of view, and a centred principal point, equals the camera with that field of view.
 function tests.the_same_camera_by_angle()
   local f = 24 / math.tan(math.rad(20))
   local function picture(fields)

@@ -63,7 +63,7 @@ for _, camera in ipairs { {}, { pixel_offset = 0.2 }, { projection = "orthograph
   end
 end
 
--- With an open shutter: at the frame's own time.
+-- With an open shutter, these passes show the frame's own time.
 local function contents(path)
   local file = assert(io.open(path, "rb"))
   local text = file:read "a"
@@ -93,7 +93,7 @@ do
   os.remove(name)
 end
 
--- A ball of radius 1 at 0.1 units per pixel: the normal's x equals the x of the pixel's centre.
+-- A ball of radius 1 at 0.1 units per pixel: the x of the normal equals the x of the pixel's centre.
 local ball = glint.scene { ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 1 }, camera = glint.camera {
   eye = { 0, 0, 10 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 2.2 } }
 for _, mode in ipairs(MODES) do

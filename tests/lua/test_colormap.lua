@@ -1,10 +1,10 @@
--- glint.colormap: published colours at the ends, in the middle and between, Moreland's map by his formula, ranges,
+-- glint.colormap: published colours at the ends, in the middle and in between, Moreland's map by his formula, ranges,
 -- and identical bits inside and outside a pattern.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
--- The 8-bit sRGB value of linear light, with its fraction.
+-- Returns the 8-bit sRGB value of linear light, with its fraction.
 local function code(x) return 255 * (x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055) end
 local function light(c) return c / 255 <= 0.04045 and c / 255 / 12.92 or ((c / 255 + 0.055) / 1.055) ^ 2.4 end
 
@@ -45,7 +45,7 @@ local function moreland(share)
     local m = math.sqrt(l * l + s * s + t * t)
     return { m, math.acos(l / m), math.atan(t, s) }
   end
-  local function hue(color, m) -- for white, so that the path from the colour is straight
+  local function hue(color, m) -- for white, the hue that makes the path from the colour straight
     if color[1] >= m then return color[3] end
     local turn = color[2] * math.sqrt(m * m - color[1] ^ 2) / (color[1] * math.sin(color[2]))
     return color[3] > -math.pi / 3 and color[3] + turn or color[3] - turn
@@ -142,7 +142,7 @@ function tests.refused()
   raises("colormap: one number or symbol expected, got 2 values", map, 1, 2)
 end
 
--- The pixel values of a .png, as one string.
+-- Returns the pixel values of a .png, as one string.
 local build = os.getenv "BUILD" or "build"
 local function codes_of(image, options)
   local path = os.tmpname()
@@ -156,7 +156,7 @@ local function codes_of(image, options)
   return codes
 end
 
--- Each colour matches the grey value without a map. The background of depth is black.
+-- Each colour is the map's colour for the pixel's grey value without a map. The background of depth is black.
 function tests.passes_in_colours()
   local x = glint.variable("x", 1)
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1,

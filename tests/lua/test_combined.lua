@@ -70,7 +70,7 @@ function tests.planes_are_half_spaces()
   hit_is(down(glint.scene { wedge }, 2, 7), 11, { s, s, 0 }, "a roof")
 end
 
--- A ray can be inside a torus twice: the remaining part of the torus on one side, and its hole.
+-- A ray can be inside a torus twice. A torus is cut off at one side, or cut out of a box.
 function tests.tori()
   local ring = glint.torus { center = { 0, 0, 0 }, axis = { 0, 1, 0 }, major = 2, minor = 0.5 }
   local groove = glint.scene { glint.difference { box({ -4, -1, -4 }, { 4, 0, 4 }), ring } }
@@ -154,7 +154,7 @@ function tests.shared_parts_move_everywhere()
   near(down(scene, 5, 0).t, 5, 0, "a longer pin")
 end
 
--- A box minus another box, in glass: light enters and leaves the same medium, whichever part it crosses.
+-- A box minus another box, in glass: light enters and leaves the same medium, whichever part of the shape it crosses.
 function tests.glass()
   local function glass(more)
     local fields = { diffuse = 0, transmission = 1, ior = 1, absorption = 0.5 }
@@ -169,7 +169,7 @@ function tests.glass()
   near(color_at(coated, 0, 0, 1)[1], math.exp(-0.5) / 4, 1e-6, "a coat takes its part twice; the inside is the whole's")
   local halves = glint.union { box({ -1, -1, -1 }, { 1, 0, 1 }), box({ -1, 0, -1 }, { 1, 1, 1 }), material = glass() }
   near(color_at(halves, 0, 0, 1)[1], math.exp(-1), 1e-6, "halves have nothing between them")
-  -- with the eye inside
+  -- the eye is inside the shape
   local scene = glint.scene { camera = glint.camera { eye = { 0.75, 0, 0 }, direction = { 0, 1, 0 }, up = { 0, 0, 1 }, fov = 1e-3 }, background = 1,
     whole }
   near(scene:render { width = 1, height = 1, output = "none" }:pixel(0, 0), math.exp(-0.5), 1e-6, "the eye in glass")
@@ -205,7 +205,7 @@ function tests.pictures()
   check(picture(pocket(1, clear)) == picture(box({ 0, -9, 0 }, { 1, -8, 1 })), "what is not there")
 end
 
--- Light through a hole, next to the hole, and through glass.
+-- Compares light through a hole, next to the hole, and through glass.
 function tests.shadows()
   local roof = glint.difference { box({ -3, 2, -3 }, { 3, 3, 3 }), box({ -1, 2, -1 }, { 1, 3, 1 }) }
   local floor = glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 1 } }
@@ -279,7 +279,7 @@ function tests.errors()
   refused("union.add: one shape expected", whole.add, whole)
   refused("union.radius: no such field", function() whole.radius = 2 end)
   refused("merge", function() return glint.merge end)
-  -- later children
+  -- adds children later
   local group = glint.group {}
   whole:add(group)
   group:add(glint.disk { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 })
@@ -293,8 +293,8 @@ function tests.errors()
   refused("half widths 1e-150 .. 1e+150 in the world expected, got 1e+300", down, glint.scene { vast }, 0, 0)
 end
 
--- Random parts: the union of a set with itself or with an empty set is that set, however many parts overlap on a ray.
--- Compares all passes, with shadows, mirrors and glass, so that rays also start on parts.
+-- Random parts: the union of a set with itself or with an empty set is that set, however many parts overlap along a
+-- ray. Compares all passes, with shadows, mirrors and glass, so that rays also start on parts.
 function tests.the_same_set_said_otherwise()
   local state = 12345
   local function random(low, high)

@@ -4,9 +4,9 @@ local check, near = tally.check, tally.near
 local glint = require "glint"
 
 local BOX_FACES = { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } }
-local BOTTOM, TOP = 3, 4 -- indices of the faces across y
+local BOTTOM, TOP = 3, 4 -- indices of the faces at the ends of the y axis
 
--- The coordinates of a box's eight corners.
+-- Returns the coordinates of a box's eight corners.
 local function corners(low, high)
   local out = {}
   for i = 0, 7 do
@@ -21,7 +21,7 @@ local function box(low, high, more)
   return glint.mesh(fields)
 end
 
--- Several boxes in one mesh; box k is inside out if turned[k].
+-- Makes one mesh of several boxes; box k is inside out if turned[k].
 local function boxes(list, turned)
   local vertices, faces = {}, {}
   for k, ends in ipairs(list) do
@@ -76,7 +76,7 @@ function tests.sets()
   hit_is(down(glint.union { glint.group { a, transform = glint.scale(1, -1, 1) } }, 0.3, 0), 8, { 0, 1, 0 }, "mirrored")
 end
 
--- Overlapping bodies merge; a body inside out within another is a hollow; a mesh all inside out stays the same.
+-- Overlapping bodies merge; an inside-out body in another one is a hollow; an entirely inside-out mesh is unchanged.
 function tests.bodies()
   local both = boxes { { LOW, HIGH }, { { -0.5, 0, -0.5 }, { 0.5, 3, 0.5 } } }
   hit_is(down(glint.union { both }, 0, 0), 6, { 0, 1, 0 }, "two bodies")
@@ -88,7 +88,7 @@ function tests.bodies()
   hit_is(glint.scene { glint.union { boxes({ { LOW, HIGH } }, { true }) } }:cast({ 0, 0, 0 }, { 0, 1, 0 }), 1, { 0, 1, 0 }, "from within")
 end
 
--- More spans along a ray than the engine stores at a time, and more overlapping bodies.
+-- Tests more spans along a ray than the engine stores at a time, and more overlapping bodies.
 function tests.many_stretches()
   local list = {}
   for i = 1, 40 do list[i] = { { -1, -i - 0.25, -1 }, { 1, -i + 0.25, 1 } } end
@@ -104,7 +104,7 @@ function tests.many_stretches()
   hit_is(down(glint.difference { boxes(copies), ball(0, 1, 0, 0.5) }, 0, 0), 8.5, { 0, 1, 0 }, "thirty in one place")
 end
 
--- Towards corners, edges and centres of a mesh box, along its diagonals and faces: each entry has an exit.
+-- Aims at corners, edges and centres of a mesh box, and along its diagonals and faces: each entry has an exit.
 function tests.edges_and_corners()
   local whole = glint.scene { glint.union { box(LOW, HIGH) } }
   local missed, wrong, n = 0, 0, 0
@@ -115,7 +115,7 @@ function tests.edges_and_corners()
           local to = { i / 4, j / 4 }
           table.insert(to, axis, side)
           for _, eye in ipairs { { 3, 5, 7 }, { 0, 8, 0 }, { -4, -4, -4 }, { 0.5, -9, 0.25 } } do
-            -- Towards the box's centre, through a point on its surface.
+            -- Aims at the box's centre, through a point on its surface.
             local o = { to[1] + eye[1] * 0.5, to[2] + eye[2] * 0.5, to[3] + eye[3] * 0.5 }
             local d = { -o[1], -o[2], -o[3] }
             local hit = whole:cast(o, d)
@@ -188,7 +188,7 @@ function tests.what_moves()
   near(scene:cast({ 0.3, 9, 0 }, { 0, -1, 0 }).t, 8.9, 1e-15, "a part that moved")
 end
 
--- A glass box with a hollow equals one of solids; with the eye inside.
+-- A glass mesh with a hollow equals one made of solid boxes, also with the eye inside.
 function tests.glass()
   local glass = glint.material { diffuse = 0, transmission = 1, ior = 1, absorption = 0.5 }
   local whole = glint.difference { box(LOW, HIGH), box({ -0.5, -0.5, -0.5 }, { 0.5, 0.5, 0.5 }), material = glass }
@@ -236,7 +236,7 @@ function tests.shadows()
   end
   roof.material = glint.material { diffuse = 0, transmission = 0.5, ior = 1, absorption = 1 }
   near(at(1.5, glint.directional_light { direction = { 0, -1, 0 } }), 0.25 * math.exp(-1), 1e-6, "through glass")
-  -- A cup: its own wall shadows its bottom.
+  -- A cup whose wall shadows its own bottom.
   local cup = glint.scene { camera = glint.camera { eye = { 0, 9, 0 }, direction = { 0, -1, 0 }, up = { 0, 0, -1 }, projection = "orthographic",
     height = 1e-6 },
     glint.point_light { position = { -4, 1.2, 0 } }, glint.difference { box({ -1, 0, -1 }, { 1, 2, 1 }), box({ -0.8, 0.5, -0.8 }, { 0.8, 2, 0.8 }) } }

@@ -1,6 +1,6 @@
--- Random nested CSG shapes against point membership, computed here: from a point outside, the ray hits nothing before
--- a point inside, and vice versa. In half of the shapes all coordinates are on a lattice, so that faces coincide and
--- rays run along them. Points with both inside and outside neighbours decide nothing, and may count as hits.
+-- Random nested CSG shapes: a ray from outside reaches no point inside before its hit, and vice versa. The test decides
+-- which points are inside. In half of the shapes all coordinates are on a lattice, so that faces coincide and rays run
+-- along them. Points with both inside and outside neighbours decide nothing, and may count as hits.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -30,7 +30,7 @@ local function between(low, high)
   end
 end
 
--- The distance of a point along an axis, and from the axis.
+-- Returns the distance of a point along an axis, and its distance from the axis.
 local function around(base, way, p)
   local length, from = math.sqrt(dot(way, way)), step(p, -1, base)
   local along = dot(from, way) / length
@@ -105,7 +105,7 @@ local sets = {
 sets.group = sets.union
 local names = { "union", "intersection", "difference", "difference", "group" }
 
--- A random transform and its inverse.
+-- Returns a random transform and the inverse of the transform.
 local function random_map()
   local kind, k = math.random(3), math.random(3)
   if kind == 1 then
@@ -149,7 +149,7 @@ local function side_of(inside, p, count)
 end
 
 local function random_ray()
-  if lattice and math.random(3) == 1 then -- in the planes of faces
+  if lattice and math.random(3) == 1 then -- a ray in the plane of a face
     local from, way, c = vector(4), { 0, 0, 0 }, math.random(3)
     way[c], from[c] = math.random(2) * 2 - 3, from[c] + random(-0.4, 0.4)
     return from, way

@@ -69,7 +69,7 @@ end
 
 -- ---- Running ----
 
--- Runs `glint cost ARGUMENTS`. Returns the exit code; its output is in the files out and err.
+-- Runs `glint cost ARGUMENTS`. Returns the exit code; the output is in the files out and err.
 local function run(arguments, before, after)
   local _, _, code = os.execute(("%s %s cost %s >%s/out 2>%s/err </dev/null %s"):format(before or "", glint, arguments,
     work, work, after or ""))
@@ -147,7 +147,7 @@ local function check_rows(name, rows, reference)
     check(row.rmse >= 0 and row.relmse >= 0 and row.flip >= 0 and row.flip <= 1, "%s: errors in range", where)
     check(row.over8 <= row.over1 and row.over1 <= 1, "%s: shares of pixels", where)
     check(row.runs >= 5 and row.runs <= 15 and not row.partial, "%s: %d runs", where, row.runs)
-    local apart = true -- from the closest in time, which may be another row of the same setting
+    local apart = true -- apart in time from the closest row, which may be another row of the same setting
     for _, other in ipairs(rows) do
       apart = apart and (other.cpu.median == row.cpu.median and other.cpu.q1 == row.cpu.q1 or other.cpu.q3 < row.cpu.q1
         or row.cpu.q3 < other.cpu.q1)
@@ -289,7 +289,7 @@ check(find(lens, "samples", 1).rmse > 3 * find(lens, "samples", 16).rmse
   and find(lens, "samples", 16).rmse > 1.5 * find(lens, "samples", 64).rmse, "a lens converges: %g, %g, %g",
   find(lens, "samples", 1).rmse, find(lens, "samples", 16).rmse, find(lens, "samples", 64).rmse)
 
--- A shutter: the frame function runs at its times, with everything that it moves, also under another knob.
+-- A shutter: the frame function runs at the shutter's times, with all its movements, also under another knob.
 local exposed = [[local glint = require "glint"
 local lamp = glint.point_light { position = { 0, 4, 4 } }
 local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 0.5 } }
@@ -317,7 +317,7 @@ local _, anew = study("anew", write("anew.lua", (exposed:gsub("TIMES", "8"):gsub
 check(table.concat(anew.left_out):find("the open shutter: the frame function creates new objects", 1, true), "said of an instant: %s",
   table.concat(anew.left_out))
 
--- Area lights, in their own units and by radiance, which a knob must leave unchanged; and a cone.
+-- Area lights, by intensity and by radiance, both of which a knob must leave unchanged; and a cone.
 local soft = study("soft", still("soft.lua", matt .. [[glint.polygon_light { vertices = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } },
   radiance = 4, samples = 4 }, glint.sphere_light { position = { 3, 6, 4 }, radius = 0.5, intensity = 0.4, samples = 4 },
   glint.spot_light { position = { -3, 6, 4 }, direction = { 3, -6, -4 }, inner = 10, outer = 40, intensity = 0.3 },

@@ -40,7 +40,7 @@ local function sum(image, x, y)
   return all
 end
 
--- One sample: by the formula, from the picture without depth cueing.
+-- One sample: compares with the formula, applied to the picture without depth cueing.
 local near, far, color = 8, 14, { 0.9, 0.1, 0.3 }
 for _, projection in ipairs { "perspective", "orthographic" } do
   for _, precision in ipairs { "double", "float" } do
@@ -71,8 +71,8 @@ for _, projection in ipairs { "perspective", "orthographic" } do
   end
 end
 
--- Several samples: each by its own depth. In a uniform scene with one light the mean is between the extremes of the
--- fade, and a cue at a large distance changes nothing.
+-- Several samples: each sample fades by its own depth. In a uniform scene with one light the mean is between the
+-- extremes of the fade. A cue at a large distance changes nothing.
 local scene = make "perspective"
 local plain = render(scene, { samples = 4 })
 scene.depth_cue = { near = 1e12, far = 2e12 }
@@ -106,7 +106,7 @@ for y = 0, 35 do
   for x = 0, 47 do
     for c = 1, 3 do
       same = same and select(c, follows:pixel(x, y)) == select(c, given:pixel(x, y))
-      local alpha = clear:pixel(x, y, "alpha") -- between 0 and 1 where glass shows the background
+      local alpha = clear:pixel(x, y, "alpha") -- alpha is between 0 and 1 where glass shows the background
       without = without and (alpha > 0 and alpha < 1 or select(c, clear:pixel(x, y)) == (alpha == 1 and select(c, given:pixel(x, y)) or 0))
     end
   end
@@ -114,7 +114,7 @@ end
 check(same, "without a colour it is the background's")
 check(without, "with alpha, what is hit keeps its cue")
 
--- The field.
+-- Tests the field depth_cue.
 local cue = scene.depth_cue
 check(cue.near == near and cue.far == far and cue.color.z == 0.8, "it reads back")
 scene.depth_cue = { far = 3 }

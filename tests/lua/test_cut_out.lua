@@ -1,4 +1,4 @@
--- Opacity that cuts: surfaces vanish where opacity is below one half; against the same scenes with and without them.
+-- Opacity that cuts: where opacity is below one half, surfaces vanish, as in the same scenes without the surfaces.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -38,7 +38,7 @@ end
 
 local function depth(image, x, y) return (image:pixel(x, y, "depth")) end
 
--- Counts the pixels of a pass that differ.
+-- Counts the pixels of a pass that differ between two images.
 local function differing(a, b, pass)
   local count = 0
   for y = 0, HEIGHT - 1 do
@@ -120,7 +120,7 @@ function tests.combined_solids_are_seen_through_holes()
   }
   local function cutter() return glint.sphere { center = { 0.6, 1.4, 0.6 }, radius = 0.8, material = grey } end
   local kinds = { glint.union, glint.intersection, glint.difference }
-  local ends = { eye = { 0, 1.5, 4 }, background = { 0.3, 0.6, -4 } } -- before it, and before a mirror that shows it
+  local ends = { eye = { 0, 1.5, 4 }, background = { 0.3, 0.6, -4 } } -- before the background, or before a mirror
   for name, part in pairs(parts) do
     for _, kind in ipairs(kinds) do
       for _, precision in ipairs { "double", "float" } do
@@ -175,7 +175,7 @@ end
 
 local function rings(p) return glint.fract(3 * glint.sqrt(p.x * p.x + (p.y - 1) * (p.y - 1)) + 0.2 * p.z) end
 
--- Each pixel shows the pane, at the whole pane's depth, or what is behind it, at the depth without the pane.
+-- Each pixel shows the pane, at the whole pane's depth, or the scene behind, at the depth without the pane.
 function tests.eyes_see_through_holes()
   for _, name in ipairs { "disk", "quad", "wall" } do
     local cut = scene_of(shapes(glint.material { opacity = glint.pattern(rings) })[name])
@@ -200,7 +200,7 @@ function tests.eyes_see_through_holes()
   end
 end
 
--- Floor points are lit as without the pane where light passes a hole, otherwise as behind a whole pane.
+-- Floor points are lit as without the pane where light passes through a hole, otherwise as behind a whole pane.
 function tests.light_goes_through_holes()
   for _, name in ipairs { "disk", "quad" } do
     local cut = scene_of(shapes(glint.material { opacity = glint.pattern(rings) })[name])

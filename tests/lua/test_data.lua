@@ -84,7 +84,7 @@ function tests.elements()
   check(count == 109, "109 elements, got %d", count)
 end
 
--- Bonds are pairs closer than the longest bond of their elements.
+-- Bonds are the pairs of atoms that are closer than the longest bond of their elements.
 function tests.caffeine()
   local frame = xyz.frame "scripts/data/caffeine.xyz"
   local atoms, formula, joins = all(frame), {}, {}
@@ -211,7 +211,7 @@ function tests.points()
   refuses("x,y,z\n1,2,\"3\n", 2, 'a closing quote in this line expected, got "1,2,\\"3"', read_points)
 end
 
--- The results of frame:atoms(...) after the radius, for all atoms.
+-- Returns the results of frame:atoms(...) after the radius, for all atoms.
 local function columns_of(frame, ...)
   local list = {}
   for _, _, _, _, _, a, b, c in frame:atoms(...) do list[#list + 1] = { a, b, c } end
@@ -280,7 +280,7 @@ function tests.edges()
   check(group.count == 8 + 12, "eight corners, twelve edges, got %d", group.count)
   local scene = glint.scene { group }
   near(scene:cast({ 1, 9, 2 }, { 0, -1, 0 }).point.y, 5.25, 1e-9, "the top of the far edge along a")
-  local hit = scene:cast({ -0.5, 3, 9 }, { 0, 0, -1 }) -- b: from (-1, 0) to (0, 5); above it c is shifted by 0.5 in y
+  local hit = scene:cast({ -0.5, 3, 9 }, { 0, 0, -1 }) -- b: (-1, 0) to (0, 5); above b, c is shifted by 0.5 in y
   near(hit.point.z, 8.25, 1e-9, "the top of the upper edge along b")
   local cell = boxes.edges { origin = { 0, 0, 0 }, a = { 0, 4, 0 }, b = { 4, 0, 0 }, c = { 0, 0, 4 } }
   near(glint.scene { cell }:cast({ 2, 9, 0 }, { 0, -1, 0 }).t, 5 - math.sqrt(48) / 250, 1e-9, "a cell; the radius is 1/250")
@@ -313,7 +313,7 @@ function tests.films()
       for _, n in ipairs { 3, 1, 3, 9, 2, 9, 4, 4, 5, 6 } do
         local frame = film:frame(n)
         local partly = n == 4 and frame:atoms()
-        if partly then partly() end -- the next call reads the rest over
+        if partly then partly() end -- the next call skips the rest of this frame
         local list = n ~= 4 and all(frame) or {}
         check(frame.number == n and (n == 4 or #list == n and list[n][2] == n and list[n][3] == n and list[n][4] == n * n),
           "%s: frame %d", name, n)
@@ -427,7 +427,7 @@ end
 function tests.memory()
   local path = write("large.xyz", "50000\n" .. ("\nC 1 2.5 0"):rep(50000))
   collectgarbage()
-  collectgarbage() -- objects with finalizers are freed in the second cycle
+  collectgarbage() -- objects with finalizers are freed in the second collection
   local before, set = collectgarbage "count", particles.new()
   set:add_frame(xyz.frame(path))
   collectgarbage()
@@ -517,7 +517,7 @@ function tests.bonds()
   check(not pcall(bonds.new, set, { distance = 1 }), "after spheres() there is nothing left")
 end
 
--- Bonds in a periodic box, against a test of every pair and every periodic image.
+-- Counts the bonds in a periodic box, by a test of every pair and every periodic image.
 local function count_across(box, atoms, longest)
   local count, s = 0, box.size
   for i, a in ipairs(atoms) do
@@ -551,7 +551,7 @@ function tests.periodic_bonds()
   check(select(2, bonds.new(load(), { box = { size = { 12, 10, 10 } } })) == 0, "another box")
   local set = particles.new()
   set:add("C", 0.5, 5, 5)
-  set:add("C", -9.5 + 10 * 7, 5, 5) -- unwrapped, seven periods away
+  set:add("C", -9.5 + 10 * 7, 5, 5) -- an atom with unwrapped coordinates, seven periods away
   _, count = bonds.new(set, { box = { size = { 10, 10, 10 }, periodic = { true, false, false } } })
   check(count == 0, "the same place, not a bond: %d", count)
   set = particles.new()
@@ -603,7 +603,7 @@ function tests.sphereflake()
   local list = {}
   sphereflake.each(2, function(x, y, z, radius) list[#list + 1] = { x, y, z, radius } end)
   check(#list == 91, "1 + 9 + 81 spheres, got %d", #list)
-  for i = 2, #list do -- each touches its parent: in the first ring that is the first sphere
+  for i = 2, #list do -- each sphere touches its parent: in the first ring, the parent is the first sphere
     local s = list[i]
     if s[4] > 0.1 then near(math.sqrt(s[1] ^ 2 + s[2] ^ 2 + s[3] ^ 2), 2 / 3, 1e-12, "distance of a child") end
   end
@@ -688,7 +688,7 @@ local function run(arguments)
   return ok, text
 end
 
--- The contents of a .pfm: width, height, and a function of x, y (from the top left) and channel.
+-- Returns the contents of a .pfm: width, height, and a function of x, y (from the top left) and channel.
 local function read_pfm(path)
   local text = slurp(path)
   local kind, width, height, start = text:match "^(P[Ff])%s(%d+)%s(%d+)%s%-[%d.]+%s()"
@@ -760,7 +760,7 @@ function tests.photometric()
   near(depth(32, 32, 1), 8.4, 1e-2, "and is 8.4 away")
   for _, p in ipairs { { 32, 32 }, { 26, 34 }, { 38, 40 } } do
     local x, y = p[1], p[2]
-    for k = 1, 7 do -- red is 0.75 (n.l) on the large ball
+    for k = 1, 7 do -- the red value is 0.75 (n.l) on the large ball
       local l = lights[k]
       local n_l = normal(x, y, 1) * l[1] + normal(x, y, 2) * l[2] + normal(x, y, 3) * l[3]
       near(l.at(x, y, 1), 0.75 * n_l, 1e-6, ("light %d at %d, %d"):format(k, x, y))

@@ -1,5 +1,5 @@
 -- scripts/lib/glint: files as real programs write them, beyond the formats' own examples: line ends, byte order
--- marks, names without an element, alternate locations, Fortran numbers, boxes of old and new versions, empty frames.
+-- marks, names without an element, alternate locations, Fortran numbers, boxes from old and new programs, empty frames.
 local build = os.getenv "BUILD" or "build"
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -20,7 +20,7 @@ local function write(name, text)
   return path
 end
 
--- All atoms of a frame as text: "C 1 2 3; H 4 5 6".
+-- Returns all atoms of a frame as text: "C 1 2 3; H 4 5 6".
 local function spell(frame)
   local list = {}
   for label, x, y, z, radius in frame:atoms() do
@@ -36,7 +36,7 @@ local function raises(want, f, ...)
   check(not ok and tostring(message):find(want, 1, true), "<%s> expected, got <%s>", want, tostring(message))
 end
 
--- The warnings of a call of f, as a list.
+-- Calls f and returns the warnings, as a list.
 local function warnings_of(f)
   local list, warn = {}, glint._warn
   glint._warn = function(message) list[#list + 1] = message end
@@ -85,7 +85,7 @@ function tests.line_ends_and_marks()
     is(spell(points.frame(write("p.csv", BOM .. ("x,y,z,radius\n1,2,3,1\n4,5,6,2"):gsub("\n", ending)))), "point 1 2 3 1; point 4 5 6 2")
   end
   raises("a.txt:3: x (a finite number) expected, got \"one\"", function() spell(xyz.frame(write("a.txt", "1\r\rC one 2 3\r"))) end)
-  -- Line ends that cross the border of two blocks.
+  -- Tests line ends that cross the border of two blocks.
   for size = 65520, 65540 do
     local path = write("long.xyz", "2\r\n" .. ("x"):rep(size) .. "\r\nC 1 2 3\r\nO 4 5 6\r\n")
     is(spell(xyz.frame(path)), "C 1 2 3; O 4 5 6", "a long comment of " .. size)
@@ -272,11 +272,11 @@ function tests.dumps()
     write("l.dump", "ITEM: TIMESTEP\n0\nITEM: ENTRIES index c_1\n1 2\n"))
 end
 
--- Films whose first frames are empty.
+-- Tests films whose first frames are empty.
 function tests.labels_and_shares_of_dumps()
   is(spell(lammps.frame(write("l.dump", dump(" pp pp pp\n0 10\n0 10\n0 10", "id type x y z", "1 C 1 2 3", "2 Fe 4 5 6")))), "C 1 2 3; Fe 4 5 6",
     "dump_modify types labels")
-  -- Sides (0, 10, 0), (20, 0, 0) and (0, 0, 5) from (1, 2, 3): the point with the fractions 0.5, 0.25, 0.2.
+  -- A box with sides (0, 10, 0), (20, 0, 0), (0, 0, 5) from (1, 2, 3); the point has the fractions 0.5, 0.25, 0.2.
   is(spell(lammps.frame(write("l.dump", dump(" abc origin pp pp pp\n0 10 0 1\n20 0 0 2\n0 0 5 3", "id xs ys zs", "1 0.5 0.25 0.2")))), "point 6 7 4",
     "shares of a cell that lies anyhow")
 end
@@ -308,7 +308,7 @@ end
 
 -- ---- Point clouds ----
 
--- The points of a file as spheres: centre, radius and the name of their material, "1 2 3 0.5 #ff0000; ...".
+-- Returns the points of a file as spheres: centre, radius and the name of their material, "1 2 3 0.5 #ff0000; ...".
 local function colored(name, text, options)
   local set = particles.new(options or { radius = 0.25 })
   set:add_frame(points.frame(write(name, text)))
@@ -370,7 +370,7 @@ function tests.clouds()
   is(colored("m.ply", (head:format("ascii", "")) .. "0 0\n0 255 0 0\n1 0 0\n0\n255 0\n"), RED_GREEN, "a point over several lines")
 end
 
--- Bytes packed by hand: control bytes below 32 precede 1 .. 32 literal bytes, others copy earlier bytes.
+-- Bytes packed by hand. Control bytes below 32 precede 1 .. 32 literal bytes; other control bytes copy earlier bytes.
 function tests.packed_clouds()
   local head = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n" ..
     "DATA binary_compressed\n"

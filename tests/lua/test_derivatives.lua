@@ -1,4 +1,4 @@
--- Derivatives by variables: properties that need no other formula, differences, dual numbers, errors, same bits.
+-- Derivatives by variables: properties that need no formula, differences, dual numbers, errors, identical bits.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -13,7 +13,7 @@ local function render(scene, passes, more)
   return scene:render(fields)
 end
 
--- A shiny ball above a matt floor.
+-- Makes a scene of a shiny ball above a matt floor.
 local function scene_of(lamp, more)
   more = more or {}
   return glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = more.ambient or 0,
@@ -33,7 +33,7 @@ local function each(a, pass_a, b, pass_b, f)
   end
 end
 
--- The largest distance of k times pass b from pass a, relative to the largest value of a.
+-- Returns the largest difference between pass a and k times pass b, relative to the largest value of a.
 local function off(a, pass_a, b, pass_b, k)
   local worst, most = 0, 0
   each(a, pass_a, b, pass_b, function(p, q)
@@ -93,7 +93,7 @@ function tests.passes_add_up()
     end
   end
   near(worst, 0, 1e-6, "2 d:x - 3 d:y")
-  lamp.y = 4 -- only a component: nothing depends on y any more
+  lamp.y = 4 -- sets only a component: after this, nothing depends on y
   local ok, message = pcall(render, lamp and scene_of(lamp), "d:y")
   check(not ok and message:find("derivative 'y': nothing in the scene depends on it", 1, true), "got %s", message)
   check(glint.value(lamp.x) == 2 and tostring(lamp.position[1]) == "2.0", "fields read back as they were written")
@@ -111,7 +111,7 @@ function tests.level_here_is_no_error()
     check(not ok and message:find("derivative 'x': nothing in the scene depends on it", 1, true), "%s: got %s", what, message)
   end
   local level, lamp = (x - 2) ^ 2, glint.point_light { position = { 2, 4, 3 } }
-  glint.point_light { position = { level, 0, 0 } } -- in no scene
+  glint.point_light { position = { level, 0, 0 } } -- a light that is in no scene
   refused("a lamp that is in no scene", scene_of(lamp))
   refused("what nothing reads", scene_of(lamp, { material = glint.material { mirror = 0.5, ior = 1.5 + level } }))
   refused("a mirror that sends nothing on", scene_of(lamp, { material = glint.material { mirror = 0.5 + level } }), { max_depth = 0 })
@@ -130,7 +130,7 @@ function tests.level_here_is_no_error()
   refused("a pattern without it", scene_of(lamp, { material = glint.material { diffuse = glint.pattern(function(p) return p.x end) } }))
 end
 
--- Area lights, against differences of pictures whose float32 leaves five digits. Samples move with their light.
+-- Area lights against differences of pictures, which float32 limits to five digits. Samples move with their light.
 function tests.area_lights_against_differences()
   local function compare(name, make, at, h)
     local image = render(make(glint.variable("p", at)), "d:p")
@@ -142,7 +142,7 @@ function tests.area_lights_against_differences()
       distances[#distances + 1] = math.abs(d - list[#distances + 1])
       most = math.max(most, math.abs(d))
     end)
-    table.sort(distances) -- the 99th percentile: there is a step where a light sample rises above the horizon
+    table.sort(distances) -- takes the 99th percentile: there is a step where a light sample rises above the horizon
     local worst = distances[#distances * 99 // 100]
     check(most > 0 and worst < 1e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
   end
@@ -165,7 +165,7 @@ function tests.area_lights_against_differences()
   end, 10, 1e-1)
 end
 
--- Derivatives next to patterns whose results they do not change.
+-- Tests derivatives next to patterns whose results they do not change.
 function tests.beside_patterns_against_differences()
   local function compare(name, make)
     local at, h = 2, 1e-2
@@ -177,7 +177,7 @@ function tests.beside_patterns_against_differences()
       distances[#distances + 1] = math.abs(d - list[#distances + 1])
       most = math.max(most, math.abs(d))
     end)
-    table.sort(distances) -- the 98th percentile: shadows have edges
+    table.sort(distances) -- takes the 98th percentile: shadows have edges
     local worst = distances[#distances * 49 // 50]
     check(most > 0 and worst < 1e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
   end
@@ -214,8 +214,8 @@ function tests.beside_patterns_against_differences()
   compare("holes", function(x) return with(x, { mirror = x / 5, opacity = wave }) end)
 end
 
--- Compares the pass d:p of `image` with differences of two frames over 2 h, at the quantile `share`, as the rest is
--- at edges. The picture must equal the one with plain numbers.
+-- Compares the pass d:p of `image` with the difference of two frames over 2 h. Takes the quantile `share`, as the
+-- other pixels are at edges. The picture must equal the one with plain numbers.
 local function is_slope(name, image, plain, high, low, h, share)
   local list, most, distances, same = {}, 0, {}, true
   each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
@@ -230,7 +230,7 @@ local function is_slope(name, image, plain, high, low, h, share)
   check(same, "%s: the picture is that of plain numbers", name)
 end
 
--- Variables in patterns.
+-- Tests derivatives by variables in patterns.
 function tests.patterns_against_differences()
   local function compare(name, fields)
     local at, h = 2, 1e-3
@@ -288,7 +288,7 @@ function tests.patterns_against_differences()
   end)
 end
 
--- Shaders, with respect to inputs and constants: nineteen of twenty pixels, as the others are at edges.
+-- Tests shaders, by inputs and by constants: nineteen of twenty pixels, as the other pixels are at edges.
 function tests.shaders_against_differences()
   local h = 1e-3
   local function compare(name, at, make, more)
@@ -413,7 +413,7 @@ function tests.dropped_objects()
   check(good, "what is dropped changes no derivative")
 end
 
--- The eye above faces or inside a ball, a moving ball under a lens: nineteen of twenty pixels, not at edges.
+-- Tests an eye above faces or inside a ball, and a moving ball under a lens: nineteen of twenty pixels, not at edges.
 function tests.what_moves_against_differences()
   local h = 1e-3
   local function compare(name, make, at, more)
@@ -669,7 +669,7 @@ function tests.adaptive()
   end)
 end
 
--- Cached results of a frame are identical with and without derivatives.
+-- A frame's cached results are identical with and without derivatives.
 function tests.beauty_is_as_without()
   local x, passes = glint.variable("x", 0.3), "beauty,diffuse,mirror,transmission"
   local function compare(absorption, shadows, samples)
@@ -691,7 +691,7 @@ function tests.beauty_is_as_without()
   compare(0, true, 4)
 end
 
--- The same script through the command: threads, instruction sets, reuse and additional passes change no byte.
+-- Runs the same script through the command: threads, instruction sets, reuse and additional passes change no byte.
 function tests.bits()
   local folder = os.tmpname()
   os.remove(folder)
@@ -746,7 +746,7 @@ end }
   for _, isa in ipairs { "ref", "generic" } do
     local probe = ("GLINT_ISA=%s %s/glint %s -f 1 -o none 2>&1"):format(isa, BUILD, script)
     local told = io.popen(probe):read "a"
-    if not told:find("this machine lacks '" .. isa .. "'", 1, true) then -- single-set builds lack the others
+    if not told:find("this machine lacks '" .. isa .. "'", 1, true) then -- some builds have one set only
       run(isa, "--passes d:x", "GLINT_ISA=" .. isa)
       same(isa, "d_x")
     end
@@ -762,7 +762,7 @@ end }
   os.execute("rm -r " .. folder)
 end
 
--- scripts/fit.lua recovers its hidden numbers, from its own picture and from that picture's file.
+-- scripts/fit.lua recovers its hidden parameters, from its own picture and from the file of that picture.
 function tests.fit()
   local hidden = { lamp_x = 3.2, lamp_y = 4.1, lamp_z = 2.4, intensity = 1.6, shininess = 45 }
   local folder = os.tmpname()

@@ -8,21 +8,21 @@ local glint = require "glint"
 local png = require "glint.png"
 local tests = {}
 
-local ROUNDING <const> = 2 ^ -23 -- of a float32 near 1
-local LOSS <const> = 2 ^ -20 -- light that dropped weak rays may carry
+local ROUNDING <const> = 2 ^ -23 -- rounding error of a float32 near 1
+local LOSS <const> = 2 ^ -20 -- largest error: the light that dropped weak rays may carry
 
 local function raises(message, f, ...)
   local ok, got = pcall(f, ...)
   check(not ok and tostring(got):find(message, 1, true), "%s: got %s", message, tostring(got))
 end
 
--- The linear value of the 8-bit pixel value k.
+-- Returns the linear value of the 8-bit pixel value k.
 local function decoded(k)
   local x = k / 255
   return x <= 0.04045 and x / 12.92 or ((x + 0.055) / 1.055) ^ 2.4
 end
 
--- A picture of 8-bit values: code(x, y), y from the top; read as linear.
+-- Makes a picture of 8-bit values: code(x, y), y from the top. It is read as linear.
 local function picture_of(width, height, code, fields)
   local name, picture = os.tmpname() .. ".png", png.grey(width, height)
   for y = 0, height - 1 do
@@ -38,7 +38,7 @@ end
 
 local function up_beside(d) return math.abs(d[2]) > 0.9 and { 0, 0, -1 } or { 0, 1, 0 } end
 
--- The centre pixel of parallel rays along `direction`.
+-- Returns the centre pixel of a view with parallel rays along `direction`.
 local function look(direction, background, objects, more)
   local fields = { background = background, camera = glint.camera { projection = "orthographic", eye = { 0, 0, 0 },
     direction = direction, up = up_beside(direction), height = 1e-3 }, table.unpack(objects or {}) }
@@ -49,7 +49,7 @@ local function look(direction, background, objects, more)
   return r, g, b, image
 end
 
--- The direction for u, v: 0, 0 is the lower left corner; the picture's centre is -z.
+-- Returns the direction for u, v: 0, 0 is the lower left corner; the picture's centre is -z.
 local function direction_of(u, v)
   local turn, height = 2 * math.pi * (u - 0.5), -math.cos(math.pi * v)
   local flat = math.sin(math.pi * v)
@@ -74,11 +74,11 @@ function tests.each_pixel_is_where_it_belongs()
   end
 end
 
--- The manual's table of panorama columns.
+-- Tests the manual's table of panorama columns.
 function tests.axes_are_columns_of_the_table()
   local columns = picture_of(360, 180, function(x) return x // 2 end)
   local axes = { { { 0, 0, -1 }, 180 }, { { 1, 0, 0 }, 270 }, { { -1, 0, 0 }, 90 } }
-  for _, axis in ipairs(axes) do -- between its own column and the previous one, of values x // 2
+  for _, axis in ipairs(axes) do -- the mean of two columns, which have the values x // 2
     near(255 * look(axis[1], columns), axis[2] / 2 - 0.5, 1e-4, "column " .. axis[2])
   end
   near(255 * look({ 0, 0, 1 }, columns), (0 + 179) / 2, 1e-4, "the first and the last meet at +z")
@@ -86,11 +86,11 @@ end
 
 function tests.the_seam_is_none()
   local sky = picture_of(W, H, function(x) return x == 0 and 200 or x == W - 1 and 100 or 10 end)
-  for _, shift in ipairs { -0.4, -0.1, 0, 0.1, 0.4 } do -- in columns, to the right of the seam
+  for _, shift in ipairs { -0.4, -0.1, 0, 0.1, 0.4 } do -- shifts in columns, to the right of the seam
     local d = direction_of(shift / W, 0.5)
     near(255 * look(d, sky), 150 + 100 * shift, 1e-3, ("%g columns from the seam"):format(shift))
   end
-  for _, wrap in ipairs { "clamp", "repeat", "around" } do -- a background has no border
+  for _, wrap in ipairs { "clamp", "repeat", "around" } do -- a background has no border, whatever the wrap mode
     local same = picture_of(W, H, function(x) return x == 0 and 200 or x == W - 1 and 100 or 10 end, { wrap = wrap })
     near(255 * look({ 0, 0, 1 }, same), 150, 1e-4, wrap)
   end
@@ -101,7 +101,7 @@ function tests.poles_are_the_first_and_last_rows()
   near(255 * look({ 0, 1, 0 }, sky), 200, 1e-4, "up")
   near(255 * look({ 0, -1, 0 }, sky), 50, 1e-4, "down")
   near(255 * look({ 0, 0, -1 }, sky), 120, 1e-4, "ahead")
-  local picture = sky -- inside a function the texture's own wrap applies
+  local picture = sky -- inside a function the wrap mode of the texture applies
   local own = glint.pattern(function(_, s) return picture(s.uv) end)
   near(255 * look({ 0, 1, 0 }, own), 125, 1e-3, "repeat: the first row and the last")
   local around = picture_of(W, H, function(_, y) return y == 0 and 200 or y == H - 1 and 50 or 120 end, { wrap = "around" })
@@ -193,7 +193,7 @@ function tests.it_is_seen_through_glass()
   expect({ image:pixel(0, 0) }, { 0, -math.sin(turn), -math.cos(turn) }, 8 * ROUNDING, "of index 1.5")
 end
 
--- A uniform colour that the tracer cannot recognise as constant.
+-- Makes a pattern of a uniform colour that the tracer cannot recognise as constant.
 local function even(color)
   return glint.pattern(function(d) return glint.vector(color) + 0 * d.x end)
 end
@@ -221,7 +221,7 @@ function tests.an_even_one_is_a_plain_background()
         end
       end
     end
-    near(worst, 0, 4 * LOSS, "the greatest difference") -- more dropped rays
+    near(worst, 0, 4 * LOSS, "the greatest difference") -- indirect light drops more rays
   end
   -- Under a uniform sky of radiance L a floor shows kd L.
   local open = glint.scene { background = even(color), indirect = { samples = 4, bounces = 1 },
@@ -368,7 +368,7 @@ end }
   os.remove(sky)
 end
 
--- The plan and its report.
+-- Tests the plan and its report.
 function tests.it_is_explained_and_counted()
   local function write(text)
     local file <close> = assert(io.open(script, "w"))

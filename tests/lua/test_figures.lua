@@ -1,5 +1,5 @@
--- Arrows, lines, arcs and labels at points of the world: their pixels against camera:project, their hidden parts against
--- scene:cast, free places for labels, and errors and warnings.
+-- Arrows, lines, arcs and labels at points of the world: their pixels against camera:project, their hidden parts
+-- against scene:cast, free positions for labels, and errors and warnings.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -23,7 +23,7 @@ local function scene_of(camera, objects)
   return scene
 end
 
--- The picture of a scene as written to a file, as a function of the pixel: green, 0 .. 1 linear, 0 outside.
+-- Returns the picture of a scene as written to a file, as a function of the pixel: green, 0 .. 1 linear, 0 outside.
 local function draw(scene, options, render)
   local path, given = os.tmpname() .. ".png", { width = WIDTH, height = HEIGHT, output = "none" }
   for key, value in pairs(render or {}) do given[key] = value end
@@ -182,7 +182,7 @@ function tests.labels()
   end
 end
 
--- The rectangle of a solid background of one label.
+-- Returns the rectangle of a solid background of one label.
 local function box_of(objects, color, render)
   local _, picture = draw(scene_of(CAMERAS.orthographic, objects), nil, render)
   local low, high = { math.huge, math.huge }, { -1, -1 }
@@ -223,7 +223,7 @@ function tests.free_places()
   check(outer[1] < WIDTH and outer[1] - inner[1] >= 23, "inside the picture: %g .. %g", inner[1], outer[1])
 end
 
--- Every point of a line is drawn or not as a ray from the eye to it decides.
+-- A point of a line is drawn exactly if a ray from the eye reaches the point.
 function tests.hidden_parts()
   local shapes = {
     glint.sphere { center = { 0.3, 0.2, 0.5 }, radius = 0.8, material = glint.material { diffuse = 0, specular = 0 } },
@@ -260,7 +260,7 @@ function tests.hidden_parts()
   end
 end
 
--- Rays are cast only where a curve lies in the picture or close to it: 1e8 pixels of an arc would take minutes.
+-- Casts rays only to the parts of a curve in or near the picture: 1e8 pixels of an arc would take minutes.
 function tests.parts_outside_the_picture()
   local scene = scene_of(CAMERAS.perspective, { glint.sphere { center = { 0, 0, 0 }, radius = 1 } })
   for _, radius in ipairs { 1e7, 1e20, 1e300 } do
@@ -271,7 +271,7 @@ function tests.parts_outside_the_picture()
   check(os.clock() - start < 20, "%g s", os.clock() - start)
 end
 
--- A line that begins on a surface and leaves it is not hidden by it; a hidden tip has neither head nor label.
+-- A surface does not hide a line that begins on it and leaves it. A hidden tip has neither head nor label.
 function tests.ends_on_surfaces()
   local camera = CAMERAS.perspective
   local black = glint.material { diffuse = 0, specular = 0 }
@@ -285,7 +285,7 @@ function tests.ends_on_surfaces()
   check(count({ 0, 0, 0 }, { 0, 0, -1.5 }, { 0.1, 0, -1.6 }, "drawn") > 0, "drawn through")
 end
 
--- A moved camera or shape gives the picture that a new scene gives, with refined edges too.
+-- A moved camera or shape gives the same picture as a new scene, also with refined edges.
 function tests.changes()
   local function make(x, eye)
     local ball = glint.sphere { center = { x, 0, 1 }, radius = 0.7 }
@@ -329,7 +329,7 @@ end
 
 -- ---- Warnings ----
 
--- The warnings of a frame.
+-- Returns the warnings of a frame.
 local function warnings_of(object, camera)
   local script, out = os.tmpname(), os.tmpname()
   local file = assert(io.open(script, "w"))
@@ -361,7 +361,7 @@ function tests.warnings()
   check(not warnings_of("arrow { from = { 0, 0, 0 }, to = { 1, 1, 0 } }"):find "arrow", "none of an arrow in the picture")
 end
 
--- Every end, size and width gives a picture.
+-- Every position of the ends, every size and every width gives a picture.
 function tests.extremes()
   local places = { { 0, 0, 0 }, { 1e300, 0, 0 }, { 0, -1e300, 1e300 }, { 0, 0, 9 }, { 0, 0, 8.999999 }, { 5e-324, 0, 0 }, { 0, 0, 1e300 }, { 3, 2, 8 } }
   local curves = {}

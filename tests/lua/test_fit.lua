@@ -43,7 +43,7 @@ function tests.a_photo_gives_them()
   os.remove(PATH)
 end
 
--- With noise of 0.01 on every value, the parameters' errors match their standard deviations, which fall with the noise.
+-- With noise of 0.01 on every value, the errors match the standard deviations, which shrink with the noise.
 function tests.the_uncertainty_is_that_of_the_noise()
   math.randomseed(7)
   local image, sigma = render(TRUE), {}

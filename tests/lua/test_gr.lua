@@ -47,7 +47,7 @@ end
 
 -- ---- Pictures against the witness ----
 
-local TIE = 1e-5 -- in pixels: a difference that such a shift explains is a tie of two surfaces or at a shadow's edge
+local TIE = 1e-5 -- in pixels; if so small a shift explains a difference, two surfaces tie, or a shadow's edge is there
 
 local function largest_difference(want, codes, at)
   local largest = 0
@@ -111,7 +111,7 @@ against_witness("lamps", "pre")
 against_witness("lamps", "pre", "--gr-specular blinn", { specular = "blinn" })
 against_witness("frames", "pre")
 against_witness("frames", "pre", "--no-reuse")
--- Scenes as students write them, each unusual in another way.
+-- Scenes as students write them, each unusual in a different way.
 for name, order in pairs {
   both = "pre", cameras = "pre", carried = "post", classes = "pre", comments = "pre", deep = "pre", dents = "post",
   family = "pre", film = "pre", globals = "pre", helpers = "post", lights = "pre", mirrored = "pre", nested = "post",
@@ -187,7 +187,7 @@ local _, _, ball = read_codes(folder .. "/ball.png")
 local _, _, linear = read_codes(folder .. "/linear.png")
 check(ball == linear and ball:byte(3 * (16 * 8 + 8) + 1) == 153, "the codes are the same")
 
--- Names are literal: % and # are not placeholders for a number.
+-- Names are literal: % and # in a name are not placeholders for a number.
 run "rm -f *.png"
 scene [[for _, name in ipairs { 'a#1.png', '50%.PNG', '%d', 'x/y', 'dot.jpg', 7 } do
   gr.render(gr.node('r'), name, 4, 4, {0,0,1}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})
@@ -299,7 +299,7 @@ says("n:rotate('x', 1)", nil, nil)
 
 -- ---- CSG shapes ----
 
--- Pixel values of a scene with `text` added. Its shapes have flat faces or round sides; spheres have other parts.
+-- Returns the pixel values of a scene with `text` added. The shapes have flat faces or round sides, not spheres.
 local function combined_codes(text)
   local output, status = scene([[
 red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)
@@ -322,7 +322,7 @@ gr.render(root, 'combined.png', 64, 48, {0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 50, {0
 end
 
 local both = combined_codes "root:add_child(box) root:add_child(post)"
--- Forms that set the operation and parts later.
+-- Tests forms that set the operation and the parts later.
 local function later(text) return "(function() local c = " .. text .. " return c end)()" end
 for _, text in ipairs { "gr.union('u', box, post)", "gr.union(box, post)", "gr.csg_union('u', box, post)",
   "gr.csg('u', box, '+', post, 2)", "gr.csg(box, post, 'union')", later "gr.union('u') c:add_children(box, post)",
@@ -341,7 +341,7 @@ for _, text in ipairs { "gr.difference('d', box, far)", "gr.csg('d', box, '-', f
 end
 local crate = "crate = gr.mesh('crate', {{0,0,0}, {1,0,0}, {0,1,0}, {1,1,0}, {0,0,1}, {1,0,1}, {0,1,1}, {1,1,1}}, {{0,2,3,1}, {4,5,7,6}, " ..
   "{0,1,5,4}, {2,6,7,3}, {0,4,6,2}, {1,3,7,5}}) mark = dressed(gr.mesh('mark', {{0,0,900}, {1,0,900}, {0,1,900}}, {{0,1,2}}), red) " ..
-  "root:add_child(mark) " -- behind the eye: meshes decide the order of transforms
+  "root:add_child(mark) " -- the mesh is behind the eye; a mesh decides the order of transforms
 local cut = combined_codes(crate .. "root:add_child(gr.difference('d', dressed(gr.nh_box('b', {0, 0, 0}, 1), red), post))")
 check(combined_codes(crate .. "root:add_child(gr.difference('d', dressed(crate, red), post))") == cut, "a mesh is a part")
 check(combined_codes(crate .. "d = gr.csg('d', crate, '-', post) d:set_material(red) root:add_child(d)") ~= "", "one without a material")
@@ -460,7 +460,7 @@ for name, case in pairs {
   check(exit == 2 and got:find("scene.lua:1: ", 1, true) and got:find(case[2], 1, true), "%s: %s", name, got)
 end
 
--- Options of the module itself.
+-- Tests options of the module itself.
 local gr = require "gr"
 for name, wrong in pairs { order = "up", pixel = 0.3, specular = 1, background = "red", size = 4 } do
   local good, message = pcall(function() gr.options[name] = wrong end)

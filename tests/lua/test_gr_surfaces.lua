@@ -29,7 +29,7 @@ local function run(text, options)
   return said, tonumber(said:match "exit (%d+)\n$")
 end
 
--- Renders the shape `s` that the text makes, 1 wide, seen along -z in ambient light only.
+-- Renders the shape `s` of the text, which is 1 wide, seen along -z in ambient light only.
 local SIZE <const> = 16
 local function look(text, options)
   local said, code = run(text .. [[
@@ -63,7 +63,7 @@ local function same(texts, options)
   return texts.pixel
 end
 
--- Red and green above blue and white.
+-- A picture: red and green above blue and white.
 local four, COLORS = png.new(SIZE, SIZE), { [0] = { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 1 } }
 for y = 0, SIZE - 1 do
   for x = 0, SIZE - 1 do four:set(x, y, COLORS[2 * (2 * y // SIZE) + 2 * x // SIZE]) end
@@ -181,7 +181,7 @@ function tests.reliefs_turn_normals()
   check(none == flat, "a relief without height does not")
 end
 
--- A face towards the eye mirrors what is behind the eye: only the background.
+-- A face towards the eye mirrors the space behind the eye: only the background.
 function tests.mirrors_add_their_share()
   local options = "--gr-background 0.2,0.4,0.6"
   local KD <const> = "m = gr.material({0.2, 0, 0.11}, {0, 0, 0}, 0"
@@ -190,7 +190,7 @@ function tests.mirrors_add_their_share()
     CUBE .. KD .. ") m:set_reflect(0.5)", CUBE .. KD .. ") m:reflection(0.5)",
     CUBE .. "m = gr.reflective_material({0.2, 0, 0.11}, {0, 0, 0}, 0, 0.5)", CUBE .. "m = gr.material_refl({0.2, 0, 0.11}, {0, 0, 0}, 0, 0.5)",
   }, options)
-  is(pixel, 8, 8, "76,51,104", "kd + half of the background") -- 0.3, 0.2, 0.41 of 255, truncated
+  is(pixel, 8, 8, "76,51,104", "kd + half of the background") -- 0.3, 0.2, 0.41 times 255, truncated
   pixel = same({ CUBE .. "m = gr.material({0, 0, 0}, {1, 1, 1}, 5, 1)", CUBE .. "m = gr.reflective()",
     CUBE .. "m = gr.material({0, 0, 0}, {0, 0, 0}, 0, 1.0)" }, options)
   is(pixel, 8, 8, "51,102,153", "all of it")
@@ -277,7 +277,7 @@ function tests.planes_are_squares()
   local pixel = same { PAINT .. "s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.5, 0.5)", PAINT
     .. "gr.options.plane = 'xy-corner' s = gr.plane('s') s:scale(0.5, 0.5, 0.5)" }
   is(pixel, 4, 4, "0,0,0", "a corner at the origin: nothing to the left") is(pixel, 9, 2, "255,0,0", "above and right of it")
-  -- Lit from the eye's side, whichever way the square faces.
+  -- The square is lit from the eye's side, whichever way it faces.
   local LIT <const> = PLAIN .. "lights = { gr.light({0, 0, 9}, {0.5, 0.4, 0.3}, {1, 0, 0}) } "
   same { LIT .. "s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)", LIT .. "s = gr.plane('s', {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 1)" }
 end
@@ -317,7 +317,7 @@ function tests.lamps_have_a_surface()
     FLOOR:format "gr.arealight({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0, 40)", FLOOR:format "gr.sphericallight({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0)",
   }
   local _, sharp = look(point)
-  for _, form in ipairs { -- small ones equal points, large ones have soft shadows
+  for _, form in ipairs { -- small lights equal points, large lights have soft shadows
     "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, %g / 2, 20)",
     "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, {0, 0, -1}, {0, 1, 0}, %g, 30)",
     "gr.area_light({0.3 - %g / 2, -%g / 2, 1}, {%g, 0, 0}, 5, {0, %g, 0}, 8, {1, 0.8, 0.6}, {1, 0.1, 0})",
@@ -447,7 +447,7 @@ end
 
 -- ---- Normals ----
 
--- The value of a matt grey in ambient light of 1 and one light from l, for a normal n.
+-- Returns the value of a matt grey with normal n, in ambient light of 1 and one light from l.
 local function shade_of(n, l)
   local function unit(v) return (v[1] * v[1] + v[2] * v[2] + v[3] * v[3]) ^ 0.5 end
   local cosine = (n[1] * l[1] + n[2] * l[2] + n[3] * l[3]) / (unit(n) * unit(l))
@@ -456,7 +456,7 @@ end
 
 local function decode(x) return ((x + 0.055) / 1.055) ^ 2.4 end
 
-local LEAN <const> = { 204 / 255, 153 / 255, 1 } -- 0.6 along u, 0.2 along v, 1 along the normal
+local LEAN <const> = { 204 / 255, 153 / 255, 1 } -- a normal of 0.6 along u, 0.2 along v, 1 along the geometric normal
 local function lit(text, l)
   local lean = png.new(1, 1)
   lean:set(0, 0, { decode(LEAN[1]), decode(LEAN[2]), 1 })
@@ -505,7 +505,7 @@ end
 
 function tests.normals_lie_on_balls()
   local map = " s:set_normal(gr.normal_map 'lean.png')"
-  local x, y = (2 * 10 + 1 - SIZE) / SIZE, (SIZE - 2 * 4 - 1) / SIZE -- about pixel 10, 4: seen from far away
+  local x, y = (2 * 10 + 1 - SIZE) / SIZE, (SIZE - 2 * 4 - 1) / SIZE -- near pixel 10, 4: the eye is far away
   local z = math.sqrt(1 - x * x - y * y)
   local round = math.sqrt(x * x + z * z)
   local u = { z / round, 0, -x / round }

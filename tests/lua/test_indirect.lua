@@ -8,8 +8,8 @@ local function near3(r, g, b, want, tolerance, name)
   for c, got in ipairs { r, g, b } do near(got, want[c], tolerance, name .. ", channel " .. c) end
 end
 
-local LOSS = 2 ^ -20 -- light that dropped weak paths may carry
-local ROUNDING = 2 ^ -23 -- of a float32 near 1
+local LOSS = 2 ^ -20 -- largest error: the light that dropped weak paths may carry
+local ROUNDING = 2 ^ -23 -- rounding error of a float32 near 1
 
 local function ball(radius, material, center)
   return glint.sphere { center = center or { 0, 0, 0 }, radius = radius, material = material }
@@ -18,7 +18,7 @@ local function floor(material, y, up)
   return glint.plane { point = { 0, y or 0, 0 }, normal = { 0, up or 1, 0 }, material = material }
 end
 
--- A scene seen from `eye`, rendered small.
+-- Renders a small picture of a scene, seen from `eye`.
 local function look(eye, direction, fields, more)
   fields.camera = glint.camera { eye = eye, direction = direction, fov = 40, up = { 0, 0.1, 1 } }
   local options = { width = 9, height = 7, output = "none", passes = "beauty,ambient,diffuse,indirect,mirror,transmission" }
@@ -57,8 +57,8 @@ for _, precision in ipairs { "double", "float" } do
   end
 end
 
--- The walls' emission: the excess of `ambient` over `diffuse`. At the end of paths, Ia replaces the rest: if it
--- equals the enclosure's light, the number of bounces does not matter.
+-- The walls' emission: the excess of `ambient` over `diffuse`. At the end of a path, Ia replaces the rest of the
+-- light: if Ia equals the enclosure's light, the number of bounces does not matter.
 do
   local glow, own = { 0.5 + 0.25, 0.25 + 0.5, 0.75 + 0.125 }, { 0.25, 0.5, 0.125 }
   for _, bounces in ipairs { 1, 3, 60 } do
@@ -115,7 +115,7 @@ do -- matt below, matt above: L1 = e1 + k1 L2, L2 = e2 + k2 L1
   })
   near(image:pixel(4, 3), (0.25 + 0.5 * 0.5) / (1 - 0.5 * 0.25), 2 * ROUNDING + LOSS, "matt plates")
 end
-do -- a mirror above: the floor's light comes back without another bounce
+do -- a mirror above: the floor's light returns to the floor without another bounce
   local image = look({ 0, 1, 0 }, { 0, -1, 0.1 }, {
     ambient = 1, indirect = { samples = 4, bounces = 30 }, floor(glint.material { diffuse = 0.5, ambient = 0.75 }, 0),
     floor(glint.material { diffuse = 0, mirror = 0.5 }, 2, -1),
@@ -136,7 +136,7 @@ do -- non-refracting glass between floor and sky, which tints its shadow and its
   local r, g, b = image:pixel(4, 3)
   near3(r, g, b, { 0.25, 0.2, 0.15 }, 2 * ROUNDING, "through a pane")
 end
-do -- a surface that scatters, reflects and transmits: chosen at random, right on average
+do -- a surface that scatters, reflects and transmits: the path chooses at random, and the average is right
   local mixed = glint.material { diffuse = { 0.3, 0.1, 0.2 }, ambient = 0, mirror = { 0.1, 0.4, 0.2 }, transmission = 0.25, ior = 1 }
   local image = look({ 0, 1, 0 }, { 0, -1, 0.1 }, {
     background = 1, indirect = { samples = 256, bounces = 1 },
@@ -186,7 +186,7 @@ do
   check(finest < coarse / 8, "error: 16 ways %g, 1024 ways %g", coarse, finest)
   check(finest < fine / 4.5, "better than the root: 64 ways %g, 1024 ways %g", fine, finest)
   check(finest < 1.5e-3, "it converges to the integral: %g", finest)
-  local both = error_of_ball(16, 16) -- samples of the pixel are additional samples of the hemisphere
+  local both = error_of_ball(16, 16) -- the samples of a pixel are additional samples of the hemisphere
   check(both < fine / 1.5, "16 ways for 16 samples %g, 64 for one %g", both, fine)
   local other = error_of_ball(64, 1, 3)
   check(other ~= fine and other < 1.5 * fine and fine < 1.5 * other, "seeds are equally good: %g, %g", fine, other)
@@ -248,7 +248,7 @@ do
   scene.indirect = nil
   check(scene.indirect == nil, "nil turns it off")
 end
-do -- a long path in a white room ends on its own; the mirror depth also limits paths
+do -- a long path in a white room ends at random; the mirror depth also limits paths
   local image = look({ 0, 0, 0 }, { 1, 0, 0 }, {
     indirect = { samples = 1, bounces = 2 ^ 31 }, glint.point_light { position = { 0, 0, 0 } }, ball(2, plain { diffuse = 0.9 }),
   })
@@ -304,7 +304,7 @@ for name, value in pairs(scene.indirect) do read = read + (name == "samples" and
 check(read == 75, "pairs reads both fields")
 local copy = glint.scene { indirect = scene.indirect }
 check(copy.indirect.samples == 5 and copy.indirect.bounces == 7, "what was read may be assigned")
-do -- a finalizer that changes the scene while a table is read
+do -- a finalizer changes the scene while the engine reads a table
   local busy = glint.scene { camera = glint.camera { eye = { 0, 0, 1 }, at = { 0, 0, 0 } } }
   for _ = 1, 200 do
     setmetatable({}, { __gc = function() busy.camera = glint.camera { eye = { 0, 0, 2 }, at = { 0, 0, 0 } } end })

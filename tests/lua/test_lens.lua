@@ -3,8 +3,8 @@ local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
-local SIDE = 65 -- pixels, odd: a pixel's centre is in the middle
-local EYE = 10 -- on the z axis
+local SIDE = 65 -- pixels per side, an odd number: the middle is the centre of a pixel
+local EYE = 10 -- z of the eye, which is on the z axis
 
 local function camera(more)
   local fields = { eye = { 0, 0, EYE }, at = { 0, 0, 0 }, fov = 20 }
@@ -20,7 +20,7 @@ local function render(scene, more)
   return scene:render(fields)
 end
 
--- Calls `visit` for the pixels of a picture with x to the right and y up from the middle, and the light.
+-- Calls `visit` for each pixel with x to the right and y up from the middle, and the pixel's light.
 local function each(image, visit, pass)
   for row = 0, image.height - 1 do
     for column = 0, image.width - 1 do
@@ -40,11 +40,11 @@ local function same(a, b, pass)
   return true
 end
 
--- Width of a pixel at distance 1 from the eye.
+-- Returns the width of a pixel at distance 1 from the eye.
 local function pixel_width(fov) return 2 * math.tan(math.rad(fov or 20) / 2) / SIDE end
 
--- The light of a small ball in the middle, seen through a lens: its sum, its mean square distance from the middle,
--- and its largest distance; in pixels.
+-- Returns the light of a small ball in the middle, seen through a lens: the sum, the mean square distance from the
+-- middle and the largest distance of the light, in pixels.
 local function blur_of(more, depth, radius, extra)
   local scene = glint.scene { camera = camera(more), ambient = 1,
     glint.sphere { center = { 0, 0, EYE - depth }, radius = radius, material = bright() } }
@@ -59,7 +59,7 @@ end
 
 local tests = {}
 
--- A point at depth d is a uniform disk of radius a |1 - d / f| in its plane: the mean square is half its square.
+-- A point at depth d is a uniform disk of radius a |1 - d / f| in that plane: the mean square is half of radius^2.
 function tests.blur_disk()
   for _, case in ipairs {
     { focus = 10, depth = 20, aperture = 0.9 }, { focus = 10, depth = 7, aperture = 1 }, { focus = 40, depth = 12, aperture = 0.7 },
@@ -110,7 +110,7 @@ function tests.blades()
       corner[i] = { sign * radius * math.cos(angle), sign * radius * math.sin(angle), 0 }
     end
     each(render(scene, { samples = 1024 }), function(x, y, light)
-      local over = -math.huge -- largest signed distance from a side
+      local over = -math.huge -- signed distance of the pixel from the side that it is farthest beyond
       for i = 1, blades do
         local angle = math.pi / 2 + math.rad(rotation) + 2 * math.pi * (i + 0.5) / blades
         over = math.max(over, sign * (x * math.cos(angle) + y * math.sin(angle)) - radius * math.cos(math.pi / blades))
@@ -123,13 +123,13 @@ function tests.blades()
     local name = ("%d blades, depth %g"):format(blades, depth)
     check(outside < 1.7, "%s: %.2f pixels outside", name, outside)
     for i = 1, blades do check(corner[i][3] > 0, "%s: corner %d is dark", name, i) end
-    -- Mean square distance of a regular polygon's points from its centre.
+    -- The mean square distance of a regular polygon's points from the centre.
     local want = radius * radius * (2 + math.cos(2 * math.pi / blades)) / 6 + 0.32
     near(squares / sum, want, 0.03 * want, name .. ": evenly over the polygon")
   end
 end
 
--- A wall of boxes, wider than the view.
+-- Makes a wall of boxes that is wider than the view.
 local function tiles(shift)
   local list = {}
   for x = -7, 6 do
@@ -141,7 +141,7 @@ local function tiles(shift)
   return list
 end
 
--- Points in the plane of focus have the same bits as in the pinhole's picture: they look the same from the whole lens.
+-- Points in the plane of focus look the same from the whole lens, so they have the same bits as with a pinhole.
 function tests.in_focus()
   for _, projection in ipairs { "perspective", "orthographic" } do
     for _, samples in ipairs { 1, 7, 16 } do
@@ -201,7 +201,7 @@ function tests.geometry_of_the_middle()
   end
 end
 
--- A highlight is computed for each point of the lens: compares with the mean over a fine grid on the disk.
+-- A highlight is computed for each point of the lens: compares with the mean over a fine grid of lens points.
 function tests.highlights()
   local shiny = glint.material { model = "phong", diffuse = 0, specular = 1, shininess = 40 }
   local lamp, aperture = { 1, 2, 6 }, 2
@@ -226,7 +226,7 @@ function tests.highlights()
   check(worst < 0.01, "off by %.2g", worst)
 end
 
--- A mirror image is blurred by the length of the whole path.
+-- The blur of a mirror image depends on the length of the whole path.
 function tests.mirrors()
   local mirror = glint.plane { point = { 0, 0, EYE - 8 }, normal = { 0, 0, 1 },
     material = glint.material { diffuse = 0, ambient = 0, mirror = 1 } }
@@ -248,7 +248,7 @@ function tests.mirrors()
   near(second / sum, radius * radius / 2 + ball * ball / 2, 0.03 * radius * radius, "how wide it is")
 end
 
--- A visible light is blurred like a ball of its size. Absent or clear surfaces change nothing, up to rounding.
+-- A visible light is blurred like a ball of its size. Cut-out or clear surfaces change nothing, up to rounding.
 function tests.what_rays_go_through()
   local view = camera { aperture = 0.8, focus = 6 }
   local function picture(...)
@@ -315,7 +315,7 @@ function tests.adaptive()
   check(count > 300 and count < SIDE * SIDE / 2, "%d pixels were sampled", count)
 end
 
--- Any region, any number of threads, with or without reuse: the same bits.
+-- Pictures have the same bits with any region and any number of threads, with or without reuse.
 function tests.parts()
   local view = camera { aperture = 0.5, focus = 7, blades = 6 }
   local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { specular = 0.5 } }

@@ -7,8 +7,8 @@ local glint = require "glint"
 local WIDTH <const>, HEIGHT <const> = 480, 360
 local PARTS <const> = { { 160, 100, 24, 16 }, { 225, 165, 24, 16 }, { 90, 225, 24, 16 }, { 330, 255, 24, 16 } }
 
--- Small balls above a floor, with a few large ones among them: so many that adjacent pixels use different cells, or
--- fewer and larger ones.
+-- Number and radius of small balls above a floor, with a few large balls among them: so many that adjacent pixels use
+-- different cells, or fewer and larger balls.
 local MANY <const>, FEW <const> = { 8000, 0.045 }, { 900, 0.15 }
 
 local function scene_of(lights, balls)
@@ -41,7 +41,7 @@ local function check_parts(name, lights, balls)
   end
   local camera = scene.camera
   scene.camera = glint.camera { eye = { 0, 5, 11 }, at = { 0, 1, 0 }, fov = 41 }
-  scene:render { width = WIDTH, height = HEIGHT } -- with several threads the grid is built in the second frame
+  scene:render { width = WIDTH, height = HEIGHT } -- with several threads the engine builds the grid in the second frame
   scene.camera = camera
   local whole, differ, dark = scene:render { width = WIDTH, height = HEIGHT }, 0, 0
   for i, r in ipairs(PARTS) do
@@ -66,7 +66,7 @@ function tests.few_afar() check_parts("few, afar", { glint.directional_light { d
 
 function tests.afar() check_parts("afar", { glint.directional_light { direction = { -1, -2, -0.5 } } }) end
 
--- No grid for a light among the spheres, a grid for a light next to them.
+-- A light among the spheres has no grid, a light next to the spheres has one.
 function tests.several()
   check_parts("several", { glint.point_light { position = { 0, 1.5, 0 }, intensity = 0.5 },
     glint.point_light { position = { -9, 6, 0 }, intensity = 0.5 } })

@@ -4,8 +4,8 @@ local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 
-local SUM = 2 ^ -21 -- in pixels: float32 rounding between beauty and the sum of all passes
-local LOST = 2 ^ -20 -- linear light in weak rays that bounces do not trace, see max_depth in the manual
+local SUM = 2 ^ -21 -- allowed difference between beauty and the sum of all passes, from float32 rounding
+local LOST = 2 ^ -20 -- linear light in weak rays that are not traced, see max_depth in the manual
 local W, H = 48, 40
 
 local function raises(want, f, ...)
@@ -43,7 +43,7 @@ local function shape()
   return glint.sphere { center = place(4), radius = random(0.4, 2), material = material() }
 end
 
--- hidden: the light's surface is invisible; a visible surface would hide objects even when the light is off.
+-- hidden: makes the light's surface invisible. A visible surface would hide objects even when the light is off.
 local function light(name, hidden)
   local fields = { name = name, color = color(), intensity = random(0.2, 1.5), shadows = math.random() < 0.8 }
   if math.random() < 0.3 then fields.ambient = color(0.2) end

@@ -23,7 +23,7 @@ local function render(scene, pixels, more)
   return scene:render(fields)
 end
 
--- The light at the middle of the floor: mean and root mean square error of a block of 16 pixels.
+-- Returns the light at the middle of the floor: mean and root mean square error of a block of 16 pixels.
 local function irradiance(light, want, width)
   local image = render(above(light, width or 1e-6), 4)
   local sum, square = 0, 0
@@ -36,7 +36,7 @@ local function irradiance(light, want, width)
   return sum / 16, math.sqrt(square / 16)
 end
 
--- The bits of every pixel.
+-- Returns the bits of every pixel.
 local function bits(image)
   local out = {}
   for y = 0, image.height - 1 do
@@ -54,7 +54,7 @@ function tests.profile()
   local x = (c - glint.cos(math.rad(30))) / (glint.cos(math.rad(20)) - glint.cos(math.rad(30)))
   local step = x * x * (3 - 2 * x)
   near(step, 0.5700181842, 1e-10, "the formula itself")
-  local axis = { glint.sin(math.rad(25)), -glint.cos(math.rad(25)), 0 } -- the floor's point is 25 degrees off the axis
+  local axis = { glint.sin(math.rad(25)), -glint.cos(math.rad(25)), 0 } -- the point is 25 degrees off the axis
   local function spot(fields)
     local f = { position = { 0, 4, 0 }, direction = axis, inner = 20, outer = 30 }
     for name, value in pairs(fields or {}) do f[name] = value end
@@ -76,7 +76,7 @@ function tests.spots_on_tiles()
   local wrong, lit, unlit = 0, 0, 0
   for i = 1, 24 do
     local x, z = 7 * glint.sin(2.4 * i), 7 * glint.cos(2.4 * i)
-    local outer = i % 6 == 0 and 80 + 4 * i or 2 + 3 * (i % 16) -- beyond 90 degrees, too
+    local outer = i % 6 == 0 and 80 + 4 * i or 2 + 3 * (i % 16) -- some angles are beyond 90 degrees
     local axis = { 0.7 * glint.sin(5 * i), -1, 0.7 * glint.cos(3 * i) }
     local length = math.sqrt(axis[1] ^ 2 + 1 + axis[3] ^ 2)
     local image = render(above(glint.spot_light { position = { x, height, z }, direction = axis, inner = outer,
@@ -108,7 +108,7 @@ end
 
 -- ---- One plain light, whose light is computed together with the surface ----
 
--- The light at a point from a light of intensity 2, in closed form: n.l / (c0 + c1 d + c2 d^2).
+-- Returns the light from a light of intensity 2 at a point, in closed form: n.l / (c0 + c1 d + c2 d^2).
 local function given(hit, place, c)
   local l, d = {}, 0
   for k = 1, 3 do
@@ -120,7 +120,7 @@ local function given(hit, place, c)
   return 2 * math.max(cosine, 0) / (c[1] + c[2] * d + c[3] * d * d)
 end
 
--- Points of a ball on a floor or a hill, seen from close up and from far away.
+-- Tests points of a ball on a floor or a hill, seen from close up and from far away.
 function tests.attenuated()
   local place, c = { 3, 4, 1 }, { 0.5, 0.1, 0.01 }
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = WHITE }
@@ -180,7 +180,7 @@ end
 
 -- ---- Irradiance in closed form, and the convergence rate ----
 
--- Lambert's formula: the integral of L cos cos' / d^2 over a polygon entirely above the floor's point.
+-- Lambert's formula: the integral of L cos cos' / d^2 over a polygon that is entirely above the floor's point.
 local function lambert(corners)
   local sum = 0
   local function unit(a)
@@ -202,8 +202,8 @@ local function polygon(corners, more)
   return fields
 end
 
-local SQUARE = { { -1, 2, -1 }, { 1, 2, -1 }, { 1, 2, 1 }, { -1, 2, 1 } } -- shines down
-local TILTED = { { 1, 1, -2 }, { 1.5, 3, -1.5 }, { 1.45, 2.9, 1 }, { 0.95, 0.9, 0.5 } } -- four, not a parallelogram
+local SQUARE = { { -1, 2, -1 }, { 1, 2, -1 }, { 1, 2, 1 }, { -1, 2, 1 } } -- a square that shines down
+local TILTED = { { 1, 1, -2 }, { 1.5, 3, -1.5 }, { 1.45, 2.9, 1 }, { 0.95, 0.9, 0.5 } } -- not a parallelogram
 local FIVE = {} -- a regular pentagon, tilted and off-centre
 for i = 0, 4 do
   local a = 2 * math.pi * i / 5
@@ -238,7 +238,7 @@ function tests.closed_forms()
   end
 end
 
--- One side is dark unless two_sided; both are equally bright; the side with counter-clockwise corners shines.
+-- One side is dark unless two_sided; then both are equally bright. The side with counter-clockwise corners shines.
 function tests.sides()
   local up = { SQUARE[4], SQUARE[3], SQUARE[2], SQUARE[1] }
   local function e(make, fields) return (irradiance(make(fields), 0)) end
@@ -343,7 +343,7 @@ function tests.extreme_radii()
   end
 end
 
--- A light with its centre below a face and a part above: one ray to the centre decides, for any kind of shape.
+-- A light crosses a face, with its centre below the face: one ray to the centre decides, for any kind of shape.
 function tests.the_middle_behind_a_face()
   local function faces(shape)
     return glint.scene { camera = glint.camera { eye = { 2, 3, 4 }, at = { 0, 0, 0 }, fov = 40 }, shape,

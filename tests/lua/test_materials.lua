@@ -34,7 +34,7 @@ end
 
 local UP = { 0, 0, 1 }
 
--- A direction above the surface, from its cosine and azimuth.
+-- Returns a direction above the surface, from its cosine and azimuth.
 local function above(cosine, azimuth)
   local sine = math.sqrt(1 - cosine * cosine)
   return { sine * math.cos(azimuth), sine * math.sin(azimuth), cosine }
@@ -111,8 +111,8 @@ local function random_pair()
   return above(math.max(math.random(), 1e-3), 7 * math.random()), above(math.max(math.random(), 1e-3), 7 * math.random())
 end
 
--- The error of float arithmetic: roundings of 2^-24, and as many in the exponent if there is one. A power below 2^-40
--- is 0. Beckmann's exponent uses the half vector's squared cosine as 1 minus the squared sine, one rounding of 1.
+-- The error bound of float arithmetic: roundings of 2^-24, and as many in the exponent if there is one. A power below
+-- 2^-40 is 0. Beckmann's exponent uses the half vector's squared cosine as 1 minus the squared sine, one rounding of 1.
 local function definitions()
   math.randomseed(4)
   for _, fields in ipairs(MATERIALS) do
@@ -134,7 +134,7 @@ end
 
 -- ---- Physics ----
 
--- The albedo towards v: the midpoint rule over rings around the mirror direction, which are denser close to
+-- Returns the albedo towards v: the midpoint rule over rings around the mirror direction, which are denser close to
 -- it.
 local function albedo(m, v, n)
   local sum, r = 0, { -v[1], -v[2], v[3] }
@@ -178,7 +178,7 @@ local function furnace()
       ok(fine <= 1 + err and err < 0.01, string.format("furnace: %s, n.v = %g", name_of(m), cosine), "%g +- %g", fine, err)
     end
   end
-  for _, model in ipairs { "phong", "blinn_phong" } do -- they are normalised by their albedo seen from above
+  for _, model in ipairs { "phong", "blinn_phong" } do -- these models are normalised by their albedo seen from above
     for _, s in ipairs { 1, 4, 30 } do
       local m = glint.material { model = model, specular = 1, normalized = true, shininess = s }
       local share = albedo(m, UP, 80)
@@ -205,10 +205,10 @@ for _, distribution in ipairs { "ggx", "beckmann" } do
   end
 end
 
--- The half vector at quantile u of the facets' projected area, from vertical outwards, and its density.
+-- Returns the half vector at quantile u of the facets' projected area, from vertical outwards, and its density.
 local function facet(m, u, azimuth)
   local a2 = m.roughness ^ 4
-  local t2 = m.distribution == "ggx" and a2 * u / (1 - u) or -a2 * math.log(1 - u) -- squared tangent of its angle
+  local t2 = m.distribution == "ggx" and a2 * u / (1 - u) or -a2 * math.log(1 - u) -- squared tangent of h's angle
   local c2 = 1 / (1 + t2)
   local density = m.distribution == "ggx" and 1 / (math.pi * a2 * c2 ^ 1.5 * (1 + t2 / a2) ^ 2) or math.exp(-t2 / a2) / (math.pi * a2 * c2 ^ 1.5)
   local sine = math.sqrt(t2 * c2)
@@ -336,7 +336,7 @@ end
 
 local GLINT = os.getenv("GLINT") or "build/glint"
 
--- The command's output for a script that renders three frames while `change` is applied.
+-- Returns the command's output for a script that renders three frames while `change` is applied.
 local function stages_of(change)
   local path = os.tmpname()
   local file <close> = assert(io.open(path, "w"))

@@ -67,7 +67,7 @@ local function binary_stl()
   return table.concat(text)
 end
 
--- With properties that a mesh does not use, before, between and after.
+-- Writes a .ply with properties that a mesh does not use, before, between and after the others.
 local function ply(format, before, after)
   local text = { "ply\nformat ", format, " 1.0\ncomment of a test\nobj_info x\nelement note 1\nproperty list uint16 int8 words\n",
     "element vertex 8\n", before or "", "property double x\nproperty float y\nproperty float32 z\nproperty ushort kind\n",
@@ -198,7 +198,7 @@ function tests.colours_by_face()
   local image = scene:render { width = 64, height = 36 }
   local r, g, b = image:pixel(28, 18)
   check(r == 0.5 and g == 0.25 and b == 0.125, "the left plate is Kd, got %g %g %g", r, g, b)
-  r, g, b = image:pixel(36, 14) -- above: the picture's sky, times Kd
+  r, g, b = image:pixel(36, 14) -- pixel above: the sky of the picture, times Kd
   check(r == 0 and math.abs(g - 0.5) < 1e-4 and b == 0, "the right plate above is 0 0.5 0, got %g %g %g", r, g, b)
   r, g, b = image:pixel(36, 21)
   check(math.abs(r - 0.25) < 1e-4 and g == 0 and math.abs(b - 0.5) < 1e-4, "and below 0.25 0 0.5, got %g %g %g", r, g, b)
@@ -213,7 +213,7 @@ end
 -- The right plate's upper half is cut out, and its highlight comes from the picture: red, and half of the blue below.
 function tests.pictures_of_highlights_and_holes()
   os.execute("mkdir -p " .. folder .. "/sub")
-  local function halves(name, upper, lower) -- linear pixel values
+  local function halves(name, upper, lower) -- these textures have linear pixel values
     glint.scene { camera = glint.camera { eye = { 0, 1, 9 }, at = { 0, 1, 0 } }, ambient = 1, background = upper,
       glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = lower } },
     }:render { width = 8, height = 8, transfer = "linear", bits = 16 }:save(folder .. "/sub/" .. name,
@@ -300,7 +300,7 @@ function tests.what_lets_light_through()
   near(got, 0.375 + 0.25 * 0.5, 1e-6, "Kd d + behind (1 - d)")
 end
 
--- Vertices shared by faces of two materials are lit for each material.
+-- Vertices shared by faces of two materials are lit once for each material.
 function tests.materials_meet_in_vertices()
   local text = "mtllib m.mtl\nv -2 -1 0\nv 0 -1 0\nv 0 1 0\nv -2 1 0\nv 2 -1 0\nv 2 1 0\nusemtl a\nf 1 2 3 4\nusemtl b\nf 2 5 6 3\n"
   write("m.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n")
@@ -322,7 +322,7 @@ end
 
 -- ---- Colours of .ply ----
 
--- Two adjacent triangles in front of the eye, with colours of corners, of faces or of both; nil: none.
+-- Renders two adjacent triangles with colours of corners, of faces or of both; nil: no colours.
 local function colored(format, corners, faces)
   local names = "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n"
   local text = { "ply\nformat ", format, " 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n",
@@ -365,7 +365,7 @@ function tests.colours_of_ply()
     mesh = shows("corners.ply", colored(format, { SKY, SKY, SKY, RED, RED, RED }), SKY, RED)
     check(#mesh.materials == 2, "corners that agree")
     shows("both.ply", colored(format, { RED, RED, RED, RED, RED, RED }, { SKY, BLUE }), SKY, BLUE)
-    -- The mean in linear light, as the closest pixel value: two thirds red, one third blue.
+    -- The mean in linear light, rounded to a pixel value: two thirds red, one third blue.
     local r, b = 0, 0
     while light_of(r + 0.5) < 2 / 3 do r = r + 1 end
     while light_of(b + 0.5) < 1 / 3 do b = b + 1 end
@@ -425,7 +425,7 @@ function tests.refused()
   refuses(": faces expected, got only faces with a vertex that is not finite", "a.stl", ("\0"):rep(80) .. "\1\0\0\0" .. ("<f"):pack(0 / 0):rep(12) .. "\0\0")
 end
 
--- A mesh or a message, wherever a file is truncated and whatever a byte is changed to.
+-- The result is a mesh or a message, wherever a file is truncated and whatever value a byte is changed to.
 function tests.cut_short_and_changed()
   write("some file.mtl", MATERIALS)
   local files = { { "cut.obj", PLATES }, { "cut.stl", text_stl() }, { "bin.stl", binary_stl() }, { "cut.ply", ply "ascii" },
@@ -444,6 +444,6 @@ function tests.cut_short_and_changed()
   end
 end
 
-tests.colours_by_face_again = tests.colours_by_face -- after the files of the other tests
+tests.colours_by_face_again = tests.colours_by_face -- runs once more, after the files of the other tests
 tally.run(tests)
 tally.finish()

@@ -330,7 +330,7 @@ function tests.formats_that_are_not_read()
   end
 end
 
--- Pictures of 8 x 8 pixels of one colour, rgb(200, 40, 90), and of grey, 128.
+-- Pictures of 8 x 8 pixels: one in the colour rgb(200, 40, 90), and one in grey, 128.
 local JPEG <const> = "ffd8ffdb0043000201010101010201010102020202020403020202020504040304060506060605060606070908060709070606080b08090a0a0a0a0a" ..
   "06080b0c0b0a0c090a0a0affdb004301020202020202050303050a0706070a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a" ..
   "0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0a0affc00011080008000803012200021101031101ffc400150001010000000000000000000000000000" ..
@@ -344,15 +344,15 @@ local function bytes_of(hex)
   return (hex:gsub("%x%x", function(digits) return string.char(tonumber(digits, 16)) end))
 end
 
--- 16 x 16 pixels in four parts: 0 and 85, below them 170 and 255.
+-- A picture of 16 x 16 pixels in four parts: 0 and 85, below them 170 and 255.
 local PARTS <const> = "ffd8ffe000104a46494600010100000100010000ffdb0043000101010101010101010101010101010101010101010101010101010101010101010101" ..
   "0101010101010101010101010101010101010101010101010101010101ffc0000b080010001001011100ffc400150001010000000000000000000000" ..
   "0000000a0bffc40014100100000000000000000000000000000000ffda0008010100003f009ff9541541543fffd9"
 
--- The corners for each value of the Exif tag Orientation, from the stored ones 1 2 / 3 4.
+-- The displayed corners for each value of the Exif tag Orientation, where the stored corners are 1 2 / 3 4.
 local TURNED <const> = { "1234", "2143", "4321", "3412", "1324", "3142", "4231", "2413" }
 
--- A JPEG with an Exif block with one tag, in either byte order.
+-- Returns a JPEG with an Exif block that has one tag, in either byte order.
 local function turned(orientation, order)
   local tiff = ((order == "<" and "II" or "MM") .. (order .. "I2I4I2I2I2I4I2I2I4"):pack(42, 8, 1, 0x112, 3, 1, orientation, 0, 0))
   local block = "Exif\0\0" .. tiff
@@ -362,7 +362,7 @@ end
 
 function tests.pictures_that_are_turned()
   local path = write("t.jpg", bytes_of(PARTS))
-  if not pcall(glint.texture, { file = path }) then return end -- without libjpeg
+  if not pcall(glint.texture, { file = path }) then return end -- this build is without libjpeg
   for orientation, corners in ipairs(TURNED) do
     for _, order in ipairs { "<", ">" } do
       local texture, got = glint.texture { file = write("t.jpg", turned(orientation, order)), transfer = "linear" }, ""

@@ -5,7 +5,7 @@ local glint = require "glint"
 
 local tests = {}
 
--- Runs the code with these names. The message must contain `want` literally.
+-- Runs the code with the module's names. The message must contain `want` literally.
 local function wrong(want, code)
   local env = setmetatable({
     glint = glint,
@@ -65,7 +65,7 @@ function tests.dots_and_colons()
   wrong("sin: write glint.sin with a dot, not with a colon", "glint:sin(1)")
 end
 
--- The reported position is the pattern's function, not the call that rendered.
+-- The reported position is in the pattern's function, not at the call that renders.
 function tests.patterns_of_one_number_have_a_place()
   local code = "local three = glint.pattern(function(p) return { p.x, 1, 1 } end)\n"
     .. "scene:add(glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { shininess = three, specular = 1 } })\n"

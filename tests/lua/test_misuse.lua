@@ -1,5 +1,5 @@
--- Every function, method and field of the API with values of every kind: gives a result or a message, never crashes,
--- and damages no object. The seed is fixed.
+-- Every function, method and field of the API gets values of every kind. It gives a result or a message, never
+-- crashes, and damages no object. The seed is fixed.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -46,7 +46,7 @@ end
 local closed = glint.sphere { center = { 0, 0, 0 }, radius = 1 }
 closed:close()
 
--- A value of any kind; tables contain more of them.
+-- Returns a value of any kind; tables contain more values.
 local function value(depth)
   local kind = math.random(depth > 0 and 14 or 11)
   if kind == 1 then return nil
@@ -86,7 +86,7 @@ for _, name in ipairs(calls) do
   for _ = 1, 400 do try(name, glint[name], value(2), value(1), value(1)) end
 end
 
--- Not called: {} and nil are valid arguments, and a frame is slow.
+-- These methods are not called: {} and nil are valid arguments, and a frame is slow.
 local skipped = { render = true, run = true, close = true }
 for _, kind in ipairs(KINDS) do
   local members = {}

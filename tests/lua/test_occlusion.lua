@@ -6,7 +6,7 @@ local glint = require "glint"
 
 local ROUNDING = 2 ^ -22
 local SAMPLES = 16384
-local NOISE = 0.002 -- for this many samples: half of the error of random sampling
+local NOISE = 0.002 -- allowed error for this many samples: half of the error of random sampling
 
 local function raises(want, f, ...)
   local good, message = pcall(f, ...)
@@ -16,7 +16,7 @@ end
 local matt = glint.material { diffuse = 1 }
 local function floor(material) return glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = material or matt } end
 
--- The image of a scene that looks straight down at the point x, 0, z from very close.
+-- Renders a scene from very close, looking straight down at the point x, 0, z.
 local function at(x, z, fields, more)
   fields.camera = glint.camera { eye = { x, 1e-3, z }, direction = { 0, -1, 0 }, up = { 0, 0, 1 }, fov = 1 }
   fields.ambient = fields.ambient or 1
@@ -53,7 +53,7 @@ function tests.walls()
   end
 end
 
--- A ball on the floor: 1 - (r / D)^3, D from its centre. A ball above the point: 1 - (r / height)^2.
+-- A ball on the floor: 1 - (r / D)^3, D to the ball's centre. A ball above the point: 1 - (r / height)^2.
 function tests.balls()
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = matt }
   for _, x in ipairs { 0.4, 1, 2.5 } do
@@ -117,7 +117,7 @@ function tests.materials()
   check(open_at(1, 0, { floor(glint.material { diffuse = 0.5, ambient = 0 }) }) == 0, "no ambient light of the material")
 end
 
--- Seen in a mirror.
+-- Occlusion also applies in a mirror.
 function tests.mirror()
   local mirror = glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0, mirror = 0.5 } }
   local ceiling = glint.plane { point = { 0, 4, 0 }, normal = { 0, -1, 0 }, material = matt }
@@ -128,7 +128,7 @@ function tests.mirror()
   near(open_at(0, 0, { mirror, disk }), 0.5 * (1 - 1 / (1 + 16)), NOISE, "a disk of radius 1, at 4: 1 - 1 / 17 of the sky")
 end
 
--- The same pixels with any threads, with or without reuse. A region equals that part of the whole.
+-- Any number of threads, with or without reuse, gives the same pixels. A region equals that part of the picture.
 function tests.ways()
   local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1 }
   local scene = glint.scene { camera = glint.camera { eye = { 0, 3, 8 }, at = { 0, 1, 0 } }, ambient = 1, floor(), ball,

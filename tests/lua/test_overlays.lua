@@ -182,7 +182,7 @@ end
 
 -- ---- A cell, wrapped lines, letters ----
 
--- The file of a scene with one overlay, 200 x 200 pixels, 50 per unit, with (1, 0.75) in the middle.
+-- Writes a scene with one overlay to a file: 200 x 200 pixels, 50 per unit, with (1, 0.75) in the middle.
 local function file_with(overlay, width)
   local camera = glint.camera { eye = { 1, 0.75, 10 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 4 }
   local scene = glint.scene { camera = camera, overlay }

@@ -1,4 +1,4 @@
--- Materials whose fields hold patterns: read and written, called once per frame, and visible in pictures.
+-- Materials whose fields hold patterns: they can be read and written, are called once per frame, and show in pictures.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
@@ -74,7 +74,7 @@ end
 
 function tests.minus_0_is_0()
   local function lit(shininess) return (picture(make_scene(glint.material { specular = 0.3, shininess = shininess }))) end
-  local minus = lit(-0.0) -- first, so that nothing is cached from the other
+  local minus = lit(-0.0) -- first, so that no results are cached from the other zero
   check(minus == lit(glint.pattern(function() return -0.0 end)), "as a pattern")
   check(minus == lit(0.0), "as 0")
 end
@@ -82,7 +82,7 @@ end
 -- v runs from the base to the top of a shape. It is constant on a cap or base, which shows one row of a texture.
 function tests.ends_are_in_one_row()
   local halves = glint.pattern(function(_, s) return glint.floor(2 * glint.fract(s.uv.v)) end)
-  local function count(shape) -- pixels of the lower and upper halves, from above, where the end hides everything else
+  local function count(shape) -- pixels of the lower and upper halves of v, from above, so that only the end is visible
     local image = glint.scene { camera = glint.camera { eye = { 0.1, 9, 0 }, at = { 0, 0, 0 }, fov = 20 }, ambient = 1, shape }
       :render { width = 96, height = 96, passes = { "albedo", "object_id" } }
     local seen = { [0] = 0, 0 }
@@ -272,7 +272,7 @@ function tests.a_bump_of_a_slope_tilts_the_normal()
   tally.near(lit({ diffuse = 0.8, bump = glint.pattern(function() return 3 end) }, -l), 0.8 * l.y, 1e-6, "a height without slope")
 end
 
--- A pattern's remaining ambient light is not in a material's constants: frames that reuse the rest must not reuse it.
+-- The constants of a material do not include the ambient light of its pattern: frames must not reuse that light.
 function tests.ambient_light_changes_what_patterns_show()
   local wave = glint.pattern(function(p) return 0.25 + glint.fract(p.x) / 2 end)
   local shader = glint.shader(function(s) return s.kd end)

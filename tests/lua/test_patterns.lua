@@ -126,7 +126,7 @@ function tests.checker_is_the_parity_of_floors()
   end
 end
 
--- Against sums over the box. The surface is at one value of p.z, whose cells on either side are not visible.
+-- Compares with sums over the box. The surface has one value of p.z, so the cells on either side are not visible.
 function tests.footprints_are_box_integrals()
   math.randomseed(5)
   for _ = 1, 100 do
@@ -194,7 +194,7 @@ end
 
 local HERE = "test_patterns.lua"
 
--- Checks that the message names this file and the line of f (`line` after that of `make`) and contains `want`.
+-- Checks that the message names this file and the line of f (`line` after that of `make`) and that it contains `want`.
 local function raises(want, make, call)
   local line = debug.getinfo(make, "S").linedefined
   local last = debug.getinfo(make, "S").lastlinedefined
@@ -306,7 +306,7 @@ function tests.the_64_points_find_branches()
   is_found(function(p) calls = calls + 1 return p.x + calls end)
 end
 
--- In Lua 0 and symbols are both true, so none of the 64 test points reveals these.
+-- In Lua both 0 and symbols are true, so none of the 64 test points reveals these mistakes.
 local function is_refused(f)
   raises("an `if`, `and` or `or` on this value", f)
 end
@@ -367,7 +367,7 @@ function tests.powers_are_let_pass()
   end
 end
 
--- Rounding once moved means below 0 and above 1 by 1e-15.
+-- Regression: rounding moved means below 0 and above 1 by 1e-15.
 function tests.means_of_tilings_stay_in_range()
   local least, most = math.huge, -math.huge
   math.randomseed(5)

@@ -4,7 +4,7 @@ local glint = require "glint"
 
 local SIZE = { width = 160, height = 90, passes = "object_id" }
 
--- The pixels of each object, by its id.
+-- Counts the pixels of each object, by the object's id.
 local function count(image)
   local pixels = {}
   for y = 0, image.height - 1 do

@@ -17,7 +17,7 @@ local function times(a, s) return { a[1] * s, a[2] * s, a[3] * s } end
 local function unit(a) return times(a, 1 / math.sqrt(dot(a, a))) end
 local function xyz(v) return { v.x, v.y, v.z } end
 
--- The bits of every pixel.
+-- Returns the bits of every pixel.
 local function bits(image)
   local out = {}
   for y = 0, image.height - 1 do
@@ -41,7 +41,7 @@ local function crossing(p, q, a, b, c)
   return t
 end
 
--- The light that a site sends to the eye. faces: lists of corners, which occlude unless they touch the site.
+-- Returns the light that a site (a face or vertex) sends to the eye. Faces occlude unless they touch the site.
 local function evaluate(model, site, normal, eye)
   local total = { 0, 0, 0 }
   for _, lamp in ipairs(model.lamps) do
@@ -61,7 +61,7 @@ local function evaluate(model, site, normal, eye)
   return total
 end
 
--- Weights of the three corners at p, in the plane of the triangle.
+-- Returns the weights of the three corners at p, in the plane of the triangle.
 local function weights(p, a, b, c)
   local n = cross(minus(b, a), minus(c, a))
   local v = dot(cross(minus(p, a), minus(c, a)), n) / dot(n, n)
@@ -100,7 +100,7 @@ local function sheet()
   return model
 end
 
--- A rotation about a random axis, then a translation: three rows and an offset.
+-- Makes a rotation about a random axis, then a translation: three rows and an offset.
 local function random_map(turned, way)
   if not turned then return { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, way } end
   local x = unit(vector(1))
@@ -146,7 +146,7 @@ local function smooth(model)
   end
 end
 
--- The light of both sides of each face or vertex, as seen by the eye: [1] with the normal, [-1] with its opposite.
+-- Returns the light of both sides of each face or vertex for the eye: [1] with the normal, [-1] with its opposite.
 local function light_sites(model, shading, eye)
   local out = { [1] = {}, [-1] = {} }
   for side, list in pairs(out) do
@@ -159,7 +159,7 @@ local function light_sites(model, shading, eye)
   return out
 end
 
--- The interpolated value of a pixel that shows triangle `element` at `point`.
+-- Returns the interpolated value of a pixel that shows triangle `element` at `point`.
 local function expect(model, shading, sites, element, point, eye)
   local face = (element + 1) // 2
   local _, normal = centroid(model.faces[face])
@@ -259,7 +259,7 @@ function tests.shadows()
   local flat, gouraud = picture "flat", picture "gouraud"
   for y = 0, 15 do
     for x = 0, 15 do
-      local dark = x < 8 and y < 8 -- the four faces around the corner
+      local dark = x < 8 and y < 8 -- only the four faces around the corner are dark
       check(flat:pixel(x, y) == (dark and 0 or 1), "flat %d, %d: %g", x, y, (flat:pixel(x, y)))
     end
   end
@@ -317,7 +317,7 @@ function tests.normals_that_look_away()
   end
 end
 
--- Passes sum up, samples average, and one-sided backs have only ambient light.
+-- Passes sum up to beauty, samples average, and the backs of one-sided faces have only ambient light.
 function tests.terms()
   local ball = glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 10, shading = "gouraud",
     material = glint.material { diffuse = 0.7, specular = 0.5, ambient = 0.3 } }
@@ -386,7 +386,7 @@ function tests.reuse()
     local script = MOVING:gsub("SHADING", case[1]):gsub("SPECULAR", case[2]):gsub("MOVE", case[3])
     local text, states = run(script), {}
     for state in text:gmatch '"vertex":"(%a+)"' do states[#states + 1] = state end
-    -- Faces that become visible are computed then: nearly all were visible before.
+    -- Faces are computed when they become visible. Nearly all faces were visible before.
     local last = states[3] == "partial" and "reused" or states[3]
     check(states[1] == "run" and last == case[4], "%s, specular %s, %s: %s", case[1], case[2], case[3],
       table.concat(states, " ") .. text:sub(1, 300))
@@ -412,7 +412,7 @@ end
 do
   local corners = { unit { 0.3, -0.2, 1 }, unit { -0.6, 0.1, 1 }, unit { 0.2, 0.7, 0.8 } }
   local map = glint.translate(0.5, -1, 2) * glint.scale(2, 3, 0.25)
-  local function between(shares, lengths) -- blends normals under diag(1/2, 1/3, 4); lengths: unnormalised
+  local function between(shares, lengths) -- blends normals under diag(1/2, 1/3, 4); with lengths: unnormalised
     local sum = { 0, 0, 0 }
     for i, n in ipairs(corners) do
       local m = { n[1] / 2, n[2] / 3, n[3] * 4 }

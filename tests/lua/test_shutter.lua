@@ -8,9 +8,9 @@ local folder = os.tmpname()
 os.remove(folder)
 os.execute("mkdir -p " .. folder)
 
-local WIDTH, HEIGHT = 45, 34 -- more than one tile, and not a whole number of tiles
+local WIDTH, HEIGHT = 45, 34 -- more than one tile, but not a whole number of tiles
 
--- The floats of a .pfm, bottom row first.
+-- Returns the floats of a .pfm, bottom row first.
 local function read_pfm(path)
   local file = assert(io.open(path, "rb"))
   local kind, width, height = file:read("l", "n", "n")
@@ -39,14 +39,14 @@ local function expose(scene, frame, options)
   return passes
 end
 
--- The times of frame 2 of 3.
+-- Returns the times of frame 2 of 3.
 local function times_of(camera)
   local times, share, count = {}, camera.shutter, camera.shutter_times
   for k = 1, count do times[k] = (1 + share * ((k - 0.5) / count - 0.5)) / 2 end
   return times
 end
 
--- The mean of stills at the same times, each written to its own file.
+-- Returns the mean of stills at the same times, each written to its own file.
 local function mean_of_stills(scene, frame, options, pass)
   local camera = scene.camera
   local times, share = times_of(camera), camera.shutter
@@ -82,7 +82,7 @@ local function with(more)
   return glint.camera(fields)
 end
 
--- A small room lit by `light`, with `more` objects in it.
+-- Makes a small room lit by `light`, with more objects in it.
 local function room(light, fields, ...)
   local parts = {
     red = glint.material { diffuse = { 0.8, 0.3, 0.2 }, specular = 0.5, shininess = 40 },
@@ -131,10 +131,10 @@ for name, case in pairs(lit) do
   local open = expose(parts.scene, frame).beauty
   parts.camera.shutter = 0
   local _, differ = worst_of(open, expose(parts.scene, frame).beauty)
-  check(differ > 20, "%s: it moves", name) -- so that the checks above can fail
+  check(differ > 20, "%s: it moves", name) -- the pictures differ without the shutter, so the checks above could fail
 end
 
-do -- a static light counts once: nothing moves, not a bit differs
+do -- a static light counts once: nothing moves, and not a bit differs
   local parts = room(glint.point_light { position = { 5, 6, 5 } })
   local got = expose(parts.scene, function() end).beauty
   parts.camera.shutter = 0
@@ -167,7 +167,7 @@ for name, make in pairs(moved) do
   end
 end
 
-do -- a visible light, a user's shader, emission: also averages pictures
+do -- with a visible light, a user's shader or emission, the engine also averages pictures
   local shader = glint.shader(function(s) return glint.max(s.n:dot(s.l), 0) ^ 2, 0 end)
   for name, case in pairs {
     seen = { glint.sphere_light { position = { 0, 4, 0 }, radius = 0.5, samples = 4, visible = true } },
@@ -218,7 +218,7 @@ do
   local light = glint.point_light { position = { 5, 6, 5 } }
   local parts = room(light)
   local function is_gone(t) return t > 0.1 and t < 0.4 end
-  local frames = { -- only lights move, which are summed; a ball moves; some times lack the parameter
+  local frames = { -- cases: only lights move, which are summed; a ball moves; some times lack the parameter
     light = function(t) light.position = { 6 * v * (t + 0.1), 6, 5 } end,
     ball = function(t) parts.ball.center = { v * (t + 0.1), 1, 0 } end,
     gone = function(t) light.intensity = is_gone(t) and 1 or v * (t + 0.1) end,
@@ -268,7 +268,7 @@ local function told(list)
   for i, t in ipairs(list) do words[i] = ("%.6g"):format(t) end
   return table.concat(words, " ")
 end
--- Each frame is built once, then at its times, and finally at its own time again.
+-- Each frame is built once, then rendered at its shutter times, and finally set to its own time again.
 local open = calls_of({ frames = 3 }, { shutter = 0.5, shutter_times = 2 })
 check(told(open[1]) == "0 0 0.0625 0", "the first of three: %s", told(open[1]))
 check(told(open[2]) == "0.5 0.4375 0.5625 0.5", "the second: %s", told(open[2]))

@@ -74,7 +74,7 @@ local function render(shape, lamps, settings, everywhere)
   return scene:render { width = 48, height = 36, output = "none", samples = settings.samples, precision = settings.precision }
 end
 
--- Counts the pixels that differ.
+-- Counts the pixels that differ between two images.
 local function differences(a, b)
   local count = 0
   for y = 0, 35 do
@@ -89,7 +89,7 @@ end
 
 local settings = {
   {}, { samples = 2 }, { precision = "float" },
-  { eye = { 1, 2.2, 0.3 } }, -- inside the ball
+  { eye = { 1, 2.2, 0.3 } }, -- an eye inside the ball
 }
 for name, shape in pairs(shapes) do
   for kind, lamps in pairs(lights) do
@@ -101,7 +101,7 @@ for name, shape in pairs(shapes) do
   end
 end
 
-do -- checks that some light is transmitted at all
+do -- checks that the shapes transmit some light at all
   local function ball(transmission)
     return function()
       return glint.sphere { center = { 1, 2, 0 }, radius = 1.2,

@@ -17,18 +17,18 @@ local function ring(fields)
   return glint.torus(given)
 end
 
--- Hits of rays on the torus of radii 2 and 0.5 around the y axis, and their normals.
+-- Compares hits of rays on the torus of radii 2 and 0.5 around the y axis, and the normals there.
 function tests.what_rays_meet()
   local scene = glint.scene { ring() }
   local cases = { -- origin, direction, t, normal
-    { { 5, 0, 0 }, { -1, 0, 0 }, 2.5, { 1, 0, 0 } }, -- the outside
-    { { 0, 0, 0 }, { 0, 0, 2 }, 0.75, { 0, 0, -1 } }, -- the inside of the ring
-    { { 2, 0, 0 }, { 1, 0, 0 }, 0.5, { 1, 0, 0 } }, -- from inside the tube
-    { { 2, 4, 0 }, { 0, -1, 0 }, 3.5, { 0, 1, 0 } }, -- the top
-    { { 0, 5, 0 }, { 0, -1, 0 } }, -- along the axis, through the hole
-    { { 5, 0.5000001, 0 }, { -1, 0, 0 } }, -- just above it
+    { { 5, 0, 0 }, { -1, 0, 0 }, 2.5, { 1, 0, 0 } }, -- hits the outside of the ring
+    { { 0, 0, 0 }, { 0, 0, 2 }, 0.75, { 0, 0, -1 } }, -- hits the inside of the ring
+    { { 2, 0, 0 }, { 1, 0, 0 }, 0.5, { 1, 0, 0 } }, -- starts inside the tube
+    { { 2, 4, 0 }, { 0, -1, 0 }, 3.5, { 0, 1, 0 } }, -- hits the top
+    { { 0, 5, 0 }, { 0, -1, 0 } }, -- passes along the axis, through the hole
+    { { 5, 0.5000001, 0 }, { -1, 0, 0 } }, -- passes just above the ring
     { { 1.6, 0.3, 9 }, { 0, 0, -1 }, 9 - math.sqrt(2.4 ^ 2 - 1.6 ^ 2), { 1.6 / 3, 0.6, math.sqrt(2.4 ^ 2 - 1.6 ^ 2) / 3 } },
-    { { 2.6, 0, -9 }, { 0, 0, 1 } }, -- next to it
+    { { 2.6, 0, -9 }, { 0, 0, 1 } }, -- passes next to the ring
   }
   for i, case in ipairs(cases) do
     local hit = scene:cast(case[1], case[2])
@@ -44,7 +44,7 @@ function tests.what_rays_meet()
   end
 end
 
--- All surfaces on a line, one after the other: the search for the next starts at each hit.
+-- Finds all surfaces on a line in turn: each search starts at the previous hit.
 function tests.four_crossings()
   local scene = glint.scene { ring { axis = { 0, 0, 3 } } }
   local from, met = -5, {}
@@ -82,7 +82,7 @@ function tests.transforms()
   check(hits > 100, "%d hits", hits)
 end
 
--- Lit points are those that the light sees: a ray from the light to the point hits nothing before it.
+-- A point is lit exactly if a ray from the light to the point hits nothing before the point.
 function tests.shadows_of_itself()
   local lamp, eye = { 7, 0.8, 2 }, { 1.5, 3, 5 }
   local size = { width = 96, height = 64, passes = { "diffuse", "depth" } }

@@ -5,7 +5,7 @@ local check, near = tally.check, tally.near
 local glint = require "glint"
 local BUILD = os.getenv "BUILD" or "build"
 
-local ROUNDING <const> = 2e-6 -- of light near 1: float32, and dropped weak rays
+local ROUNDING <const> = 2e-6 -- allowed error of light near 1: float32 rounding and dropped weak rays
 
 local function raises(want, call, ...)
   local good, message = pcall(call, ...)
@@ -18,7 +18,7 @@ local function camera(fields)
   return glint.camera(all)
 end
 
--- A square of side 2 s perpendicular to the z axis.
+-- Makes a square of side 2 s, perpendicular to the z axis.
 local function sheet(z, material, s)
   s = s or 1
   return glint.mesh { vertices = { { -s, -s, z }, { s, -s, z }, { s, s, z }, { -s, s, z } }, faces = { { 1, 2, 3, 4 } }, material = material }
@@ -30,7 +30,7 @@ local function plain(color, fields)
   return glint.material(all)
 end
 
--- The centre of a picture of these objects under ambient light only.
+-- Returns the centre of a picture of these objects under ambient light only.
 local function look(objects, fields, options)
   local all, render = { camera = camera(), ambient = 1, background = { 0.2, 0.4, 0.6 } }, { width = 9, height = 9 }
   for name, value in pairs(fields or {}) do all[name] = value end
@@ -98,7 +98,7 @@ function tests.many_sheets_in_any_order()
   end
 end
 
--- Lights that light a floor through a sheet between all of the floor and the light.
+-- Lights for a floor, with a sheet between the whole floor and each light.
 local lights = {
   point = function() return glint.point_light { position = { 1, 8, 1 } } end,
   near = function() return glint.point_light { position = { 1, 8, 1 }, attenuation = { 0, 0, 0.03 } } end,
@@ -130,7 +130,7 @@ function tests.shadows_keep_their_share_of_light()
   }
   local floor = glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = plain({ 0.9, 0.5, 0.2 }, { specular = 0.4 }) }
   for kind, light in pairs(lights) do
-    local buried = glint.sphere { center = { 0, -60, 0 }, radius = 1, material = veil } -- same light without a cover
+    local buried = glint.sphere { center = { 0, -60, 0 }, radius = 1, material = veil } -- same light without cover
     local function picture(cover)
       local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 5 }, at = { 0, 0, 0 } }, light(), floor, buried }
       if cover then scene:add(cover) end
@@ -156,8 +156,8 @@ local W <const>, H <const> = 24, 18
 
 local function backdrop() return sheet(-3, plain({ 0.1, 0.6, 0.3 }, { specular = 0.5 }), 6) end
 
--- The largest error of a picture with opacity o as a blend of the opaque picture (o) and the one without the shape (1
--- - o), and how far those two differ. make: a shape from a material; fields: of the material, without opacity.
+-- Returns the largest difference between a picture with opacity o and the blend of the opaque picture (o) and the
+-- clear one (1 - o), and how far these two differ. make: makes the shape from a material with `fields` and opacity.
 local function superposition(make, fields, o, scene_fields, options)
   local function picture(opacity, mode)
     local own = { opacity = opacity, opacity_mode = mode }
@@ -357,7 +357,7 @@ function tests.passes_are_of_the_first_surface()
   near((image:pixel(4, 4, "object_id")), 1, 0, "the first object")
 end
 
--- Each light's pass equals the picture without the other lights.
+-- The pass of each light equals the picture without the other lights.
 function tests.light_passes_add_up()
   local function picture(only)
     local scene = glint.scene { camera = camera { eye = { 1, 2, 7 } }, ambient = only and 0 or 0.2, background = only and 0 or { 0.2, 0.4, 0.6 },
@@ -394,7 +394,7 @@ function tests.alpha_follows_what_is_let_through()
     { "before something", { sheet(0, red), sheet(-1, plain { 0, 1, 0 }) }, 1, { o, 1 - o, 0 } },
     { "a clear pane", { sheet(0, pane) }, 0.4, { 0, 0, 0 } },
     { "a clear ball", { glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glass } }, 1 - 0.81, { 0, 0, 0 } },
-    { "before a mirror", -- it reflects the sheet's other side and the background
+    { "before a mirror", -- the mirror shows the other side of the sheet, and the background
       { sheet(0, red), sheet(-1, plain(0, { mirror = 1 })) }, 1, { o + (1 - o) * (o + (1 - o) * 0.2), (1 - o) ^ 2 * 0.4, (1 - o) ^ 2 * 0.6 } },
     { "more than all", { sheet(0, plain(0, { transmission = 3, ior = 1 })) }, 0, { 0, 0, 0 } },
     { "nothing", {}, 0, { 0, 0, 0 } },
@@ -544,7 +544,7 @@ function tests.instruction_sets_agree()
     local pipe = assert(io.popen(("BUILD=%s GLINT_ISA=%s %s %s digest 2>/dev/null"):format(BUILD, isa, arg[-1] or "lua5.4", arg[0])))
     local text = pipe:read "a"
     pipe:close()
-    if text ~= "" then -- empty when this machine or build lacks it
+    if text ~= "" then -- the text is empty when this machine or build lacks the instruction set
       count, first = count + 1, first or text
       check(#text > 24 * W * H * 20, "%s: %s", isa, text:sub(1, 200))
       check(text == first, "%s has the bits of ref", isa)

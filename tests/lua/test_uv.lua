@@ -15,7 +15,7 @@ local function scene_of(shape, eye)
   return glint.scene { camera = glint.camera { eye = eye or { 0.3, 0.2, 6 }, at = { 0, 0, 0 }, fov = 50 }, ambient = 1, shape }
 end
 
--- Calls f(x, y, hit) for each pixel of PASSES that shows something.
+-- Calls f(x, y, hit) for each pixel of PASSES that shows a surface.
 local function each_hit(scene, f)
   local camera = scene.camera
   local w = (glint.vector(camera.eye) - camera.at):unit()
@@ -50,13 +50,13 @@ end
 
 local tests = {}
 
--- Triangles under a general map, with their own coordinates: interpolated by the areas at the point.
+-- Triangles under a general map, with their own coordinates: interpolated by the areas around the point.
 function tests.between_corners_by_areas()
   local vertices = { { -2, -1.2, 0 }, { 1.5, -1, 0.4 }, { 1.8, 1.3, -0.3 }, { -1.6, 1.1, 0.5 } }
   local uv = { { 0.1, 0.2 }, { 0.9, 0.1 }, { 0.7, 0.8 }, { 0.3, 0.4 }, { 0.6, 0.9 }, { 0.2, 0.5 } }
   local faces = { { 1, 2, 3 }, { 1, 3, 4 } }
   local map = glint.translate(0.2, 0.1, 0) * glint.rotate("y", 20) * glint.scale(-1, 0.8, 1.2)
-  local function placed(i) -- the map, step by step
+  local function placed(i) -- applies the map, step by step
     local v = glint.vector { -vertices[i][1], 0.8 * vertices[i][2], 1.2 * vertices[i][3] }
     local c, s = math.cos(math.rad(20)), math.sin(math.rad(20))
     return glint.vector { c * v.x + s * v.z + 0.2, v.y + 0.1, c * v.z - s * v.x }
@@ -169,7 +169,7 @@ function tests.rounding_stays_within_the_corners()
   check(count > 300, "%d pixels", count)
 end
 
--- A pixel's footprint in uv uses whichever of u and v grows faster: here v, half as wide as in the world.
+-- The footprint of a pixel in uv uses the faster growing one of u and v: here v, half as wide as in the world.
 function tests.the_footprint_is_that_of_the_steeper_one()
   local ratio = glint.pattern(function(_, s) return s.uv_footprint / s.footprint end)
   local scene = scene_of(quad { uv = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, material = glint.material { diffuse = ratio } })
@@ -224,7 +224,7 @@ end
 
 -- ---- Bumps ----
 
--- The cosine of the angle between the normals with and without the bump, at each pixel.
+-- Calls f with the cosine of the angle between the normals with and without the bump, at each pixel.
 local function each_tilt(make, bump, f)
   local plain, bumped = scene_of(make(glint.material {})), scene_of(make(glint.material { bump = bump }))
   local a, b = plain:render(PASSES), bumped:render(PASSES)

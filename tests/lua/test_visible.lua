@@ -19,9 +19,9 @@ local function render(scene, more)
   return scene:render(fields)
 end
 
--- A pentagon, made coplanar in double; and the shapes that the lights below should look like.
+-- A pentagon, made coplanar in double; and the shapes that look like the lights below.
 local CORNERS = { { -1, 1, 0.5 }, { 1.2, 0.9, 0 }, { 1.4, 2.7, 0.1 }, { -0.3, 3, 0.6 }, { -1.2, 2.1, 0.7 } }
-do -- in one plane
+do -- moves all corners into one plane
   local a, b, c = CORNERS[1], CORNERS[2], CORNERS[3]
   local u = { b[1] - a[1], b[2] - a[2], b[3] - a[3] }
   local v = { c[1] - a[1], c[2] - a[2], c[3] - a[3] }
@@ -48,7 +48,7 @@ local KINDS = {
 
 local tests = {}
 
--- In every pixel a light appears where a shape of its form does, at the same distance, with the same normal.
+-- A light appears in the same pixels as a shape of its form, at the same distance, with the same normal.
 function tests.the_form_of_the_shape()
   for name, kind in pairs(KINDS) do
     for _, projection in ipairs { "perspective", "orthographic" } do
@@ -79,7 +79,7 @@ function tests.the_form_of_the_shape()
   end
 end
 
--- pi L by radiance, I A(D) by intensity.
+-- Checks the brightness: pi L by radiance, I A(D) by intensity.
 function tests.how_bright()
   local function shown(make, fields)
     local image = render(glint.scene { camera = camera(), make(copy(fields, { visible = true })) })
@@ -127,7 +127,7 @@ function tests.sides()
   check(not sees(glint.point_light, { position = { 0, 1.5, 0 } }), "a point has no surface")
 end
 
--- A light with an opaque ball in front and one behind, a mirror, and glass of index 1.
+-- Makes a light with an opaque ball in front and another ball behind, a mirror, and glass of index 1.
 local function room(visible)
   return glint.scene { camera = camera(), ambient = 0.1, background = { 0.02, 0.03, 0.05 },
     glint.sphere_light { position = { -0.5, 2.4, 0 }, radius = 0.9, radiance = 0.2, color = { 1, 0.5, 0.25 }, samples = 4,
@@ -172,7 +172,7 @@ function tests.in_the_room()
   check(lamps > 200 and mirrored > 50 and through > 10, "%d, %d mirrored, %d through glass", lamps, mirrored, through)
 end
 
--- A light covers what is behind it, in alpha too.
+-- A light covers the scene behind it, also in alpha.
 function tests.coverage()
   local scene = glint.scene { camera = camera(), background = 1,
     glint.sphere_light(copy(BALL, { radiance = 0.1, visible = true })) }
@@ -222,7 +222,7 @@ function tests.in_a_wall()
   end
 end
 
--- With several samples per pixel, the light's share is the share of samples that see it.
+-- With several samples per pixel, the light's share of the pixel is the share of the samples that see the light.
 function tests.samples()
   local scene = glint.scene { camera = camera(), glint.sphere_light(copy(BALL, { radiance = 1 / math.pi, visible = true })) }
   local one, many, edge = render(scene), render(scene, { samples = 16 }), 0

@@ -105,7 +105,7 @@ local function mesh(s)
     list(m.normals), #texts, table.concat(texts, ", "), s.scale and "scale " .. vector(s.scale) or "")
 end
 
--- The shape that replaces a sphere, up to its texture.
+-- Returns the shape that replaces a sphere, up to its texture.
 local function shape(s, center, radius)
   if not s then return ("sphere { %s, %.17g"):format(vector(center), radius) end
   if s.kind == "mesh" then return mesh(s) end

@@ -49,12 +49,12 @@ local function material(surface, fields)
   if surface.checker then
     local even, odd = glint.vector(fields.diffuse), w.diffuse * glint.vector(surface.checker)
     fields.diffuse = glint.pattern(function(p) return glint.select(glint.checker(p), odd, even) end)
-    fields.ambient = nil -- follows
+    fields.ambient = nil -- the ambient reflectance follows the diffuse reflectance
   end
   return glint.material(fields)
 end
 
--- A part of a CSG shape.
+-- Makes a part of a CSG shape.
 local function part(s)
   if s.kind == "ball" then return glint.sphere { center = s.center, radius = s.radius } end
   if s.kind == "box" then return glint.box { min = s.min, max = s.max } end
@@ -64,7 +64,7 @@ local function part(s)
   return glint[s.kind](fields)
 end
 
--- A shape instead of a sphere.
+-- Makes the shape that replaces a sphere.
 local function shape(s, sphere, surface, coat)
   local center = { sphere[1][1], sphere[1][2] + (surface.lift or 0), sphere[1][3] }
   if not s then return glint.sphere { center = center, radius = sphere[2], material = coat } end

@@ -3,7 +3,7 @@ package.path = "scripts/lib/?.lua;" .. package.path
 local png = require "glint.png"
 local sky = dofile("tests/povray/workshop.lua").sky
 
--- The linear light that the encoder turns into the pixel value 255 c.
+-- Returns the linear light that the encoder turns into the pixel value 255 c.
 local function decoded(c) return c <= 0.04045 and c / 12.92 or ((c + 0.055) / 1.055) ^ 2.4 end
 
 local picture = png.new(sky.width, sky.height)

@@ -13,7 +13,7 @@ local function sheet(scale)
       local u, v = i / across, j / down
       local x, y = -7 + 6 * u, 1 + 5 * (1 - v)
       local z = float(-2 + 5 * v + 0.35 * math.sin(7 * u) * math.cos(5 * v))
-      local du = 0.35 * 7 * math.cos(7 * u) * math.cos(5 * v) / 6 -- derivatives of z by x and by y
+      local du = 0.35 * 7 * math.cos(7 * u) * math.cos(5 * v) / 6 -- derivatives of z with respect to x and y
       local dv = -(5 - 0.35 * 5 * math.sin(7 * u) * math.sin(5 * v)) / 5
       local l = math.sqrt(du * du + dv * dv + 1)
       local n = { -du / l * s[1], -dv / l * s[2], s[3] / l }
@@ -33,20 +33,20 @@ end
 return {
   eye = { 0, 6.2, 20.5 },
   at = { 0, 3.8, 0 },
-  fov = 42, -- degrees, vertical
-  height = 15, -- world units, for the orthographic view
+  fov = 42, -- vertical field of view, in degrees
+  height = 15, -- height of the orthographic view, in world units
   background = { 0.2, 0.3, 0.5 },
   sky = { -- for the surfaces `sky`: a panorama with red, green and blue at x, y from the top left, 0 .. 1
     width = 64, height = 32,
     color = function(x, y) return { 0.1 + 0.6 * x, 0.1 + 0.6 * y, 0.2 + 0.3 * ((64 * x // 4 + 32 * y // 4) % 2) } end,
   },
   light = { color = { 0.8, 0.75, 0.7 }, position = { 0, 20, 0 }, direction = { -3, -5, -2 } },
-  spot = { inner = 8, outer = 14, direction = { 0.05, -1, 0.08 } }, -- at the light's position; POV-Ray: radius, falloff
-  fade = 15, -- distance at which fall-off leaves the light unchanged
+  spot = { inner = 8, outer = 14, direction = { 0.05, -1, 0.08 } }, -- a spot light there; in POV-Ray: radius, falloff
+  fade = 15, -- distance at which the fall-off leaves the light unchanged
   grid = { side = 5, width = 4 }, -- an area light: side x side point lights
-  ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- for every sphere
-  max_depth = 16, -- limit up to which both rays of a surface are traced
-  shapes = { -- replacements for some of the spheres
+  ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- values for every sphere
+  max_depth = 16, -- largest depth at which both rays of a surface are traced
+  shapes = { -- shapes that replace some of the spheres
     solids = {
       [2] = { kind = "box", min = { -4.5, 0, -7 }, max = { 1.5, 6, -2.5 } },
       [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 7, 5, -2 }, radius = 1.8 },
@@ -111,15 +111,15 @@ return {
     fresnel = { [5] = { lift = 0.5, transmission = 1, ior = 1.5, fresnel = true }, [3] = { lift = 0.5, transmission = 1, ior = 1.2, fresnel = true } },
   },
   more = { -- additional spheres of glass
-    inside = { { center = { 0.4, 5.9, 21 }, radius = 1.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 } }, -- it holds the eye
-    nested = { -- nested in the fifth sphere, each with another index
+    inside = { { center = { 0.4, 5.9, 21 }, radius = 1.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 } }, -- around the eye
+    nested = { -- spheres nested in the fifth sphere, each with another index
       { center = { 0.8, 2.5, 4.3 }, radius = 1.3, transmission = 0.95, ior = 1.1, absorption = 0, specular = 0 },
       { center = { 0.7, 2.4, 4.5 }, radius = 0.7, transmission = 0.9, ior = 1.8, absorption = 0.1, specular = 0 },
     },
   },
   lens = { aperture = 0.6, focus = 17, blur_samples = 120 },
-  depths = { nested = 14, prism = 14 }, -- other values of max_depth
-  spheres = { -- center, radius, colour
+  depths = { nested = 14, prism = 14 }, -- max_depth for scenes that need another value
+  spheres = { -- centre, radius, colour of each sphere
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
     { { -1.0, 4.0, -4.5 }, 4.0, { 0.70, 0.12, 0.10 } },
     { { 5.8, 3.0, -1.0 }, 3.0, { 0.85, 0.55, 0.10 } },
