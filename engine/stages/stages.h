@@ -1,16 +1,16 @@
-/// The contract of every stage: what it reads and writes. This file has the rules for all stages. The single stages
-/// are in contract/tables.h, contract/hits.h, contract/light.h and contract/film.h, in the order of work, with those
-/// of derivatives and programs in contract/derivative.h and contract/program.h.
+/// The contract of every stage: what it reads and writes. This file has the rules for all stages. contract/tables.h,
+/// contract/hits.h, contract/light.h and contract/film.h describe the individual stages in the order in which they
+/// run; contract/derivative.h and contract/program.h describe the stages of derivatives and programs.
 ///
 /// A stage takes plain arrays in and gives plain arrays out. It knows nothing about scenes. Each stage is written
 /// once in the vector vocabulary (simd/) and compiled for every instruction set, and once more, independently, as the
-/// scalar reference (ref/). All of them give the same bits: + - * / sqrt, compares and selects in the order of ref/,
-/// without contraction or reassociation. `min(a, b)` is `a < b ? a : b` and `max(a, b)` is `a > b ? a : b`, also for
-/// NaN. dot(a, b) is (a.x b.x + a.y b.y) + a.z b.z. length2(a) is dot(a, a).
+/// scalar reference (ref/). All versions give the same bits: they use + - * / sqrt, compares and selects in the order
+/// of ref/, without contraction or reassociation. `min(a, b)` is `a < b ? a : b` and `max(a, b)` is `a > b ? a : b`,
+/// also for NaN. dot(a, b) is (a.x b.x + a.y b.y) + a.z b.z. length2(a) is dot(a, a).
 ///
-/// Samples of a tile are stored in groups of 16: a block of 4 x 4 pixels, row by row. `real` is double or float, by
-/// the frame's precision. Arrays of real are `void *` here, and every kernel of geometry exists for both. Numbers of
-/// tables, which are double, are rounded to float before they are used in float arithmetic.
+/// Samples of a tile are stored in groups of 16: a block of 4 x 4 pixels, row by row. `real` is double or float,
+/// depending on the frame's precision. Arrays of real are `void *` here, and every kernel of geometry exists for
+/// both. Values in tables, which are double, are rounded to float before they are used in float arithmetic.
 ///
 /// Arrays are aligned to 64 bytes and as long as the groups. Indices of primitives and materials are below 2^31. The
 /// sign and payload of NaN results are not defined.
@@ -25,7 +25,7 @@
 #include "engine/stages/contract/program.h"
 #include "engine/stages/contract/tables.h"
 
-/// One instruction set's stages.
+/// The stages compiled for one instruction set.
 typedef struct glint_stages {
     const char *name;
     struct glint_geometry_stages {
@@ -67,9 +67,9 @@ extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_a
 /// The instruction sets of this build, NULL-terminated, best last.
 extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
-/// Returns an instruction set by name, with "sse2" for generic. NULL selects that of the environment's GLINT_ISA,
-/// otherwise the best usable one. Returns NULL if the name is unknown (*unknown true) or the machine lacks the
-/// instruction set (false); *requested is that name.
+/// Returns an instruction set by name, with "sse2" for generic. NULL selects the one that the environment variable
+/// GLINT_ISA names, otherwise the best one that the machine supports. Returns NULL if the name is unknown (*unknown
+/// is true) or the machine lacks the instruction set (*unknown is false); *requested is the name.
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
 
 #endif

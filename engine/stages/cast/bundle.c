@@ -1,4 +1,4 @@
-// Camera rays, and hits of bundles of rays: from one eye, parallel, and through a lens.
+// Camera rays, and hits of coherent bundles of rays: rays from one eye, parallel rays, and rays through a lens.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"

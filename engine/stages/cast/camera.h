@@ -4,7 +4,8 @@
 
 #include "engine/stages/simd/real.h"
 
-/// Computes 2 (first + step) - size for the lanes of a group, in double, rounded to real. `mirrored`: size - 2 (...).
+/// Computes 2 (first + step) - size for the lanes of a group, in double, rounded to real. If `mirrored` is set,
+/// computes size - 2 (first + step) instead.
 static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], double offset, double size,
                                  bool mirrored, real out[GLINT_GROUP])
 {
@@ -24,7 +25,7 @@ static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], d
 static const _Alignas(64) double R(lane_x)[GLINT_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
 static const _Alignas(64) double R(lane_y)[GLINT_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
 
-/// Directions from one eye are the sum of a column's part and a row's part.
+/// Computes the directions from one eye. Each is the sum of a vector for the column and a vector for the row.
 static void R(camera_perspective)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP];
@@ -44,8 +45,8 @@ static void R(camera_perspective)(const glint_camera_args *args)
     }
 }
 
-/// For pixels at any position: each row of groups has complete directions, and the column adds nothing, not even a
-/// sign.
+/// For pixels at any position: `down` gets the complete directions, and `across` gets -0, which changes no number,
+/// not even the sign of a 0.
 static void R(camera_pixels)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP], t[GLINT_GROUP];
@@ -79,7 +80,7 @@ static void R(camera_orthographic)(const glint_camera_args *args)
     }
 }
 
-/// Computes a group of a perspective camera, through its lens.
+/// Computes the rays of a group of a perspective camera with a lens.
 INNER void R(lens_perspective)(const glint_camera_args *args, const real *shift, const real *bend, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP, x = g % args->groups_across, y = g / args->groups_across;
@@ -93,7 +94,7 @@ INNER void R(lens_perspective)(const glint_camera_args *args, const real *shift,
         }
 }
 
-/// Computes one component for an orthographic camera; the other parts of the rays are known.
+/// Computes one component of the rays of an orthographic camera with a lens.
 INNER void R(lens_orthographic)(const glint_camera_args *args, const real *shift, const real *bend, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -142,7 +143,7 @@ INNER void R(load3)(const void *const v[3], size_t at, vr out[3])
         out[k] = r_load((const real *)v[k] + at);
 }
 
-/// A group, and its position among the camera's groups.
+/// The number of a group, and the column and row of the group in the tile.
 typedef struct R(group_cursor) {
     uint32_t g, x, y;
 } R(group_cursor);
@@ -156,7 +157,8 @@ INNER void R(next_group)(const glint_camera_args *camera, R(group_cursor) * curs
     }
 }
 
-/// The directions of one group: the sums of a column's and a row's numbers, or (both NULL) in arrays.
+/// The directions of one group: sums of a column's vector and a row's vector. If both are NULL, the directions are in
+/// arrays.
 typedef struct R(group_directions) {
     const real *across, *down;
 } R(group_directions);
@@ -169,8 +171,8 @@ INNER R(group_directions) R(directions_of)(const glint_camera_args *camera, uint
                                    (const real *)camera->down + (size_t)y * 3 * GLINT_GROUP };
 }
 
-/// Loads the directions of the lanes from i on. `direction`, `at`: the arrays and the group's offset in them; only
-/// read if the directions are in arrays.
+/// Loads the directions of the lanes from i on. `direction`, `at`: the arrays, and the offset of the group in them;
+/// only read if the directions are in arrays.
 INNER void R(load_direction)(R(group_directions) from, const void *const direction[3], size_t at, int i, vr out[3])
 {
     for (int k = 0; k < 3; k++) {

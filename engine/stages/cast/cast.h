@@ -1,5 +1,5 @@
 // cast: the nearest hit of each ray from the eye. The whole tile traverses the index once, nearest boxes first. Each
-// primitive that it reaches is tested group by group. Contract: stages.h.
+// primitive that the traversal reaches is tested group by group. Contract: stages.h.
 #ifndef GLINT_CAST_CAST_H
 #define GLINT_CAST_CAST_H
 
@@ -50,7 +50,7 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
     args->hits[g] = (uint16_t)hits;
 }
 
-/// Casts groups inside the image that a sphere fills: no pixel needs its own test.
+/// Casts groups inside the image in which a sphere fills every pixel, so that no pixel needs its own test.
 static void R(cast_filled)(const R(tile_cast) * tile, const R(candidate) * candidate, uint64_t groups)
 {
     const glint_cast_args *args = tile->args;
@@ -93,7 +93,7 @@ static inline void R(clear_groups)(R(tile_cast) * tile, uint64_t groups)
     }
 }
 
-/// Casts a group whose pixels need their own tests, against the candidates that it may show.
+/// Casts a group whose pixels need their own tests, against the candidates that the group may show.
 INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, const uint64_t may[],
                          const uint64_t sure[], int slot)
 {
@@ -125,7 +125,7 @@ INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candida
         R(finish_group)(tile->args, g);
 }
 
-/// Returns the groups that have a ray; *whole: those with a ray in every lane.
+/// Returns a bit mask of the groups that have a ray; *whole: the groups with a ray in every lane.
 static inline uint64_t R(live_groups)(const R(tile_cast) * tile, uint64_t *whole)
 {
     uint64_t live = 0;
@@ -181,9 +181,8 @@ static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candid
     }
 }
 
-/// Opens the root: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns the
-/// number of candidates. may: for each
-/// candidate, the groups in which its box may be visible.
+/// Opens the root: its primitives become candidates, and its nodes are pushed on the stack, the nearest last. Returns
+/// the number of candidates. may: for each candidate, the groups in which its box may be visible.
 static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t may[], screen_entry *stack,
                         int *height)
 {
@@ -204,7 +203,7 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t
     return found;
 }
 
-/// Casts the primitives in the slots of `mask`.
+/// Tests the groups against the primitives in the slots of `mask`.
 INNER void R(cast_prims_as)(R(tile_cast) * tile, const bool gathered, R(cast_leaf) * leaf, const glint_node *node,
                             const node_on_screen *seen, unsigned mask)
 {
@@ -219,7 +218,7 @@ INNER void R(cast_prims_as)(R(tile_cast) * tile, const bool gathered, R(cast_lea
         R(cast_triangles)(tile, gathered, leaf, node, seen, triangles);
 }
 
-/// The same for pixels at any position.
+/// Does the same for pixels at any position.
 static __attribute__((noinline)) void R(cast_prims_to_pixels)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
                                                               const node_on_screen *seen, unsigned mask)
 {
@@ -273,7 +272,7 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         R(cast_prims)(tile, &leaf, waiting, &seen[!turn], waiting_prims);
 }
 
-/// Makes candidates of the planes ahead of the camera, from number *next on, at most `capacity` of them.
+/// Makes candidates of at most `capacity` planes ahead of the camera, starting with plane number *next.
 static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * candidates, int capacity)
 {
     const glint_geometry_table *geometry = tile->args->geometry;

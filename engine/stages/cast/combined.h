@@ -1,7 +1,7 @@
-// combined: solids made of others by union, intersection and difference. For each part, a ray has an interval inside
-// of it. The whole can only begin or end at an end of such an interval. It does if the program's result just before
-// the end differs from the result just after it, with all parts evaluated at that one t. Parts whose faces are in one
-// plane have bit-equal ends there, so that they change together. Contract: stages.h, cast.
+// combined: solids made of other solids by union, intersection and difference. A ray has an interval inside each
+// part. The ray can only enter or leave the whole at an end of such an interval. It does so if the program's result
+// just before that end differs from the result just after it, with all parts evaluated at the same t. Parts whose
+// faces are in one plane have bit-equal ends there, so that these parts change together. Contract: stages.h, cast.
 #ifndef GLINT_CAST_COMBINED_H
 #define GLINT_CAST_COMBINED_H
 
@@ -18,10 +18,11 @@
 typedef struct R(stretches) {
     vr t[2][GLINT_PARTS_MAX];
     uint32_t triangle[2][GLINT_PARTS_MAX][VR]; ///< for meshes: the triangles through which the rays enter and leave
-    vr known; ///< end of the known intervals: a mesh may have more
-    uint64_t live; ///< parts of the program that have an interval
-    uint32_t length; ///< of the program; 0: these rays hit nothing
-    const uint8_t *program; ///< the program of the whole, or its simplification for these rays, in `own`
+    vr known; ///< t up to which all intervals are known; a mesh may have further intervals beyond
+    uint64_t live; ///< bit mask of the parts that have an interval
+    uint32_t length; ///< length of the program; 0: these rays hit nothing
+    const uint8_t *program; ///< the program of the whole, or a simplification for these rays, which is stored in
+        ///< `own`
     uint8_t own[2 * GLINT_PARTS_MAX];
 } R(stretches);
 
@@ -58,8 +59,8 @@ static bool R(stretch_within)(const glint_geometry_table *table, const glint_pri
     return true;
 }
 
-/// Corrects the intervals of the lanes in `own`, which start on the part: rays that go into it are inside up to its
-/// other side, others are nowhere inside.
+/// Corrects the intervals of the lanes in `own`, whose rays start on the part: a ray that goes into the part is
+/// inside up to the other side, any other ray is never inside.
 static void R(stretch_from)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                             unsigned own, unsigned into, vr t[2])
 {
@@ -76,7 +77,8 @@ static void R(stretch_from)(const glint_geometry_table *table, const glint_prim 
     t[1] = r_select(on, r_select(in, out, r_set(-HUGE_VAL)), t[1]);
 }
 
-/// Computes one of the at most two intervals inside a torus; own, into: as above. Returns whether any ray has it.
+/// Computes the first or the second interval inside a torus; own, into: as above. Returns whether any ray has this
+/// interval.
 static bool R(stretch_of_torus)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                                 unsigned own, unsigned into, vr t[2])
 {
@@ -91,7 +93,7 @@ static bool R(stretch_of_torus)(const glint_geometry_table *table, const glint_p
     return rm_bits(r_lt(r_set(0), t[1])) != 0;
 }
 
-/// Returns the lanes of a vector whose entries are `wanted`.
+/// Returns the lanes of a vector in which the list has the number `wanted`.
 static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
 {
     unsigned lanes = 0;
@@ -104,7 +106,7 @@ static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
 /// few parts remain.
 static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
-    uint32_t begin[GLINT_PARTS_MAX]; // where the code of each set so far begins; a set without code is empty
+    uint32_t begin[GLINT_PARTS_MAX]; // offset of the code of each set so far; a set without code is empty
     uint32_t top = 0, n = 0;
     for (uint32_t k = 0; k < whole->length; k++) {
         const uint8_t p = whole->program[k];
@@ -128,7 +130,7 @@ static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretch
             s->live |= (uint64_t)1 << s->own[k];
 }
 
-/// Does the same, with shortcuts for all parts and for one part.
+/// Does the same, with shortcuts for the case that all parts remain, and for the case that one remains.
 static inline void R(make_program)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
     if (live && live == whole->all) {
@@ -151,11 +153,11 @@ static inline void R(make_program)(const glint_combined *whole, uint64_t live, R
 typedef struct R(whole_rays) {
     const vr *o, *d;
     const uint32_t *on; ///< the primitive that each ray starts on; NULL: none
-    unsigned inward, lanes; ///< lanes that go into that primitive; lanes that are wanted
+    unsigned inward, lanes; ///< lanes whose rays go into that primitive; wanted lanes
 } R(whole_rays);
 
-/// Computes the intervals of a mesh, which uses the parts from j on. from: intervals up to here are done; 0: none.
-/// Returns the parts that have an interval.
+/// Computes the intervals of a mesh, which uses the parts from j on. from: t up to which the intervals were handled
+/// before; 0: none were. Returns the parts that have an interval.
 static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const glint_prim *part, uint32_t j,
                                      const R(whole_rays) * w, unsigned lanes, vr from, R(stretches) * s)
 {
@@ -182,8 +184,8 @@ static inline bool R(starts_on)(const uint32_t *on, uint32_t first, uint32_t cou
     return starts;
 }
 
-/// Computes the intervals of a part that can have several, or if rays start on some part (`starts`). Of the other
-/// rays, only `lanes` are needed. Returns whether any ray is inside the part.
+/// Computes the intervals of a part that can have several intervals, or of any part if rays start on some part
+/// (`starts`). Only the rays in `lanes` are needed. Returns whether any ray is inside the part.
 static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_table *table, const glint_prim *part, uint32_t index,
                                                          const R(whole_rays) * w, unsigned lanes, bool starts, vr t[2])
 {
@@ -202,7 +204,7 @@ static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_ta
     return any || (own & into);
 }
 
-/// Computes the intervals of all parts. lanes: the unfinished ones of w->lanes; from: see above.
+/// Computes the intervals of all parts. lanes: the lanes of w->lanes that are not finished; from: see above.
 static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                               unsigned lanes, vr from, R(stretches) * s)
 {
@@ -234,10 +236,10 @@ static void R(find_stretches)(const glint_geometry_table *table, const glint_com
     R(make_program)(whole, live, s);
 }
 
-/// The state of one set next to positions on rays.
+/// Whether rays are inside one set just before and just after a position on each ray.
 typedef struct R(change) {
-    rm before, after; ///< whether the ray is inside
-    vr part; ///< the part on whose surface the change is, if there is one
+    rm before, after; ///< lanes whose ray is inside just before the position, and just after it
+    vr part; ///< if the ray enters or leaves the set there: the part on whose surface it does
 } R(change);
 
 static inline rm R(unlike)(rm a, rm b) { return rm_or(rm_andnot(a, b), rm_andnot(b, a)); }
@@ -249,8 +251,7 @@ INNER rm R(combine_masks)(uint8_t operation, rm a, rm b)
     return operation == GLINT_COMBINE_INTERSECTION ? rm_and(a, b) : rm_andnot(a, b);
 }
 
-/// Combines two sets. The part of the result is that of the first set that changes in the same direction as the
-/// result.
+/// Combines two sets. The result gets the part of the first set that changes in the same direction as the result.
 INNER void R(combine)(uint8_t operation, R(change) * a, const R(change) * b, const bool parts)
 {
     const rm before = R(combine_masks)(operation, a->before, b->before);
@@ -261,7 +262,7 @@ INNER void R(combine)(uint8_t operation, R(change) * a, const R(change) * b, con
     a->after = after;
 }
 
-/// Returns the change of the whole at t. parts, a constant: change->part is wanted.
+/// Returns the change of the whole at t. parts, a constant: whether `part` of the result is wanted.
 INNER R(change) R(change_at)(const R(stretches) * s, vr t, const bool parts)
 {
     R(change) stack[GLINT_PARTS_MAX];
@@ -295,7 +296,7 @@ INNER rm R(in_before)(const vr stretch[2], vr t) { return rm_and(r_lt(stretch[0]
 
 INNER rm R(in_after)(const vr stretch[2], vr t) { return rm_and(r_le(stretch[0], t), r_lt(t, stretch[1])); }
 
-/// Updates *best by an end of an interval beyond `from` if it is nearer and `mask` equals `is`.
+/// Lowers *best to an end of an interval if that end is beyond `from` and nearer, and `mask` equals `is`.
 INNER void R(nearer_end)(vr t, vr from, rm ends, rm mask, const bool is, vr *best)
 {
     const rm ahead = rm_and(r_lt(from, t), ends);
@@ -303,7 +304,7 @@ INNER void R(nearer_end)(vr t, vr from, rm ends, rm mask, const bool is, vr *bes
 }
 
 /// Returns the first change of a combination of two parts; operation: a constant. At an end of one part's interval,
-/// the whole changes or not depending on whether the ray is inside the other part.
+/// it depends on whether the ray is inside the other part whether the whole changes.
 INNER vr R(first_of_two)(const uint8_t operation, const vr a[2], const vr b[2], vr from)
 {
     const bool both = operation == GLINT_COMBINE_INTERSECTION, less = operation == GLINT_COMBINE_DIFFERENCE;
@@ -317,8 +318,8 @@ INNER vr R(first_of_two)(const uint8_t operation, const vr a[2], const vr b[2], 
     return best;
 }
 
-/// Returns whether a change at t of a combination of two belongs to the second part, because the first does not
-/// change in the same direction.
+/// Returns the lanes in which a change of a combination of two parts at t belongs to the second part, because the
+/// first part does not change in the same direction.
 static inline rm R(is_of_second)(const R(stretches) * s, vr t)
 {
     const uint8_t *p = s->program;
@@ -328,7 +329,7 @@ static inline rm R(is_of_second)(const R(stretches) * s, vr t)
                  R(unlike)(after, R(combine_masks)(p[2], after, R(in_after)(b, t))));
 }
 
-/// Returns the first change of a program with more parts.
+/// Returns the first change of a program with more than two parts.
 static vr R(first_of_many)(const R(stretches) * s, vr from)
 {
     vr best = r_set(HUGE_VAL);
@@ -362,8 +363,8 @@ static inline vr R(first_change)(const R(stretches) * s, vr from)
 }
 
 /// Computes the first change of the whole for the rays of `lanes`, into `s`, `t` and `hit`. Returns the rays that
-/// need further intervals. The caller repeats the call for them, with the *from that this call stored, until none is
-/// left.
+/// need further intervals. The caller repeats the call for these rays, with the *from that this call stored, until no
+/// ray is left.
 static unsigned R(next_change)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                                unsigned lanes, vr *from, R(stretches) * s, vr *t, unsigned *hit)
 {
@@ -371,7 +372,8 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
     *t = R(first_change)(s, *from);
     const unsigned decided = rm_bits(rm_or(r_lt(*t, s->known), r_eq(s->known, r_set(HUGE_VAL))));
     *hit = rm_bits(r_lt(*t, r_set(HUGE_VAL))) & lanes & decided;
-    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the next smaller number, as it is normal
+    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the next smaller number, because
+        // `known` is a normal number
     return lanes & ~decided;
 }
 
@@ -393,8 +395,8 @@ static void R(update_part)(const glint_cast_args *args, const glint_combined *wh
     }
 }
 
-/// Decides the whole for a vector of rays, from lane `at` of the call on, and stores the nearest hit, as a hit of a
-/// part. Returns whether any hit was stored.
+/// Decides the whole for a vector of rays, which begins at lane `at` of the call, and stores the nearest hits as hits
+/// of parts. Returns whether any hit was stored.
 static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *args, const glint_combined *whole, size_t at, const R(whole_rays) * w)
 {
     R(stretches) s;
@@ -424,7 +426,7 @@ static __attribute__((noinline)) bool R(cast_combined)(const glint_cast_args *ar
     return any != 0;
 }
 
-/// Decides a combined solid for the rays of a group in `near`. Returns whether any hit was stored.
+/// Decides a combined solid for the rays in the lanes `near` of a group. Returns whether any hit was stored.
 static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const glint_prim *prim, unsigned near)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
@@ -445,7 +447,7 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
     return any;
 }
 
-/// Does the same for the eye's rays in group (x, y) of a tile.
+/// Does the same for the rays from the eye in group (x, y) of a tile.
 static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim, int x, int y,
                                                               size_t at, unsigned near)
 {

@@ -1,11 +1,12 @@
-// face: the planes of flat surfaces. Faces described in one plane share one face's numbers, so that all of them are
-// hit at the same t, and the first one defined wins. A ray that starts on a face is at height 0. Contract: stages.h.
+// face: the planes of flat surfaces. Faces that the scene describes in one plane share one glint_face, so that a ray
+// hits all of them at the same t, and the face that was defined first wins. A ray that starts on a face is at height
+// 0. Contract: stages.h.
 #ifndef GLINT_CAST_FACE_H
 #define GLINT_CAST_FACE_H
 
 #include "engine/stages/simd/real.h"
 
-/// Returns x, or 0 if |x| is within the rounding error of 0.
+/// Returns x, or 0 if |x| is at most `bound`, the bound of its rounding error.
 static inline vr R(unless_within)(vr x, vr bound) { return r_select(r_le(r_max(x, -x), bound), r_set(0), x); }
 
 /// Returns the height of a point over a face.
@@ -32,7 +33,7 @@ INNER vr R(over_level_slab)(const glint_face *low, const int k, const vr *point,
 }
 
 /// Returns how fast rays rise over the faces low[0] and low[1], which have the same normal. Also computes the heights
-/// of their origin, `point`, over both. point: NULL: no heights are wanted.
+/// of `point`, where the rays start, over both faces. point: NULL: no heights are wanted.
 INNER vr R(over_slab)(const glint_face *low, const vr *point, const vr d[3], vr height[2])
 {
     if (low->axis < 3)

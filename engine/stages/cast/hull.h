@@ -1,8 +1,8 @@
 // hull: the intervals of rays inside a closed mesh that is a part of a combined solid. A point is inside if the rest
-// of the ray leaves the mesh more often than it enters. This holds at edges and corners, too, because each ray
-// crosses exactly one of the triangles that share an edge or corner, or none: it is treated as if shifted along the
-// two axes perpendicular to the direction's largest component, along the second axis infinitely more than along the
-// first. Contract: stages.h, cast.
+// of the ray leaves the mesh more often than it enters. This also holds at edges and corners, because each ray
+// crosses at most one of the triangles that share an edge or corner. The ray is treated as if it were shifted along
+// the two axes perpendicular to the direction's largest component, by an infinitesimal amount, infinitely more along
+// the second axis than along the first. Contract: stages.h, cast.
 #ifndef GLINT_CAST_HULL_H
 #define GLINT_CAST_HULL_H
 
@@ -13,7 +13,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define HULL_CROSSINGS_MAX 16 ///< crossings of a ray that are stored at a time
+#define HULL_CROSSINGS_MAX 16 ///< number of crossings of a ray that are stored at a time
 
 /// The crossings of one ray with triangles, ahead of its origin, nearest first.
 typedef struct R(crossings) {
@@ -21,8 +21,8 @@ typedef struct R(crossings) {
     real t[HULL_CROSSINGS_MAX];
     int winding[HULL_CROSSINGS_MAX]; ///< exits minus entries at that t
     uint32_t triangle[HULL_CROSSINGS_MAX]
-                     [2]; ///< the first triangle there through which the ray enters, leaves; GLINT_MISS:
-        ///< none
+                     [2]; ///< at that t, the first triangle through which the ray enters, and the first one through
+        ///< which it leaves; GLINT_MISS: none
     uint32_t begun[2]; ///< likewise, for triangles that the ray starts on
     real lost; ///< the nearest crossing that could not be stored; inf: none
 } R(crossings);
@@ -33,10 +33,11 @@ typedef struct R(hull_rays) {
     const glint_prim *part;
     const vr *o, *d;
     const uint32_t *on; ///< the primitive that each ray starts on; NULL: none
-    vr permuted[3]; ///< the direction, its largest component last
-    rm y, z; ///< lanes whose largest component is y, z; x in the other lanes
+    vr permuted[3]; ///< the direction, with the axes permuted so that its largest component is last
+    rm y, z; ///< lanes in which the direction's largest component is y, and in which it is z; it is x in the other
+        ///< lanes
     _Alignas(64) real origin[3][VR];
-    _Alignas(64) real from[VR]; ///< crossings up to here are done
+    _Alignas(64) real from[VR]; ///< t up to which crossings were handled before
     ray_view view[VR];
     R(crossings) of[VR];
 } R(hull_rays);
@@ -73,7 +74,7 @@ static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
     }
 }
 
-/// Stores a triangle if it is the first one defined at its t with this direction of crossing.
+/// Stores a triangle if, of the triangles crossed at this t in the same direction, it was defined first.
 static inline void R(note_triangle)(uint32_t found[2], int winding, uint32_t index)
 {
     if (index < found[winding > 0])
@@ -111,7 +112,7 @@ static inline bool R(starts_on_hull)(const R(hull_rays) * rays, int i)
     return rays->on && rays->on[i] != GLINT_MISS && rays->on[i] - (rays->table->prim_count + hull->first) < hull->count;
 }
 
-/// Stores the crossings of the rays of `out` and `in` with the triangle.
+/// Stores the crossings with the triangle: rays of `out` leave through it, rays of `in` enter through it.
 static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out, unsigned in, vr crossing_t)
 {
     const glint_prim *prim = &rays->table->prims[index];
@@ -121,7 +122,8 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     for (unsigned bits = out | in; bits; bits &= bits - 1) {
         const int i = __builtin_ctz(bits), orientation = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
-        bool begun = t[i] == 0; // only exact for shared planes; at an edge, where rays may start, rounding decides
+        bool begun = t[i] == 0; // this is only exact for shared planes; for a ray that starts at an edge, rounding
+            // decides
         if (rays->on && rays->on[i] == index)
             continue;
         if ((!prim->face || on_hull) && t[i] <= near && -near <= t[i]) {
@@ -215,7 +217,7 @@ typedef struct R(ray_within) {
     int count;
     real t[2][GLINT_HULL_PARTS];
     uint32_t triangle[2][GLINT_HULL_PARTS];
-    real known; ///< end of the known intervals
+    real known; ///< t up to which all intervals are known
 } R(ray_within);
 
 /// Makes the crossings of a ray that starts on the mesh agree with whether it goes inside: if the crossings ahead
@@ -230,7 +232,7 @@ static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
     return inside;
 }
 
-/// Computes the intervals. remaining: remaining exits minus entries.
+/// Computes the intervals. remaining: exits minus entries that are still ahead of the ray.
 static void R(find_within)(const R(crossings) * of, int remaining, R(ray_within) * in)
 {
     in->count = 0;
@@ -253,9 +255,10 @@ static void R(find_within)(const R(crossings) * of, int remaining, R(ray_within)
         in->t[1][in->count++] = (real)HUGE_VAL;
 }
 
-/// Computes the intervals of the rays of `lanes` inside a mesh, GLINT_HULL_PARTS at a time. `t` and `triangle` are
-/// those of the mesh's parts; *known: up to where the intervals are complete. into: lanes that go into the mesh if
-/// they start on it. first: this is the first call for these rays. Returns the parts with an interval, one bit each.
+/// Computes the intervals of the rays of `lanes` inside a mesh, GLINT_HULL_PARTS at a time. `t` and `triangle` belong
+/// to the parts of the mesh; *known: t up to which the intervals are complete. into: lanes whose rays go into the
+/// mesh if they start on it. first: whether this is the first call for these rays. Returns the parts with an
+/// interval, one bit each.
 static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned into, bool first, vr *const t[2],
                                   uint32_t (*const triangle[2])[VR], vr *known)
 {

@@ -1,4 +1,4 @@
-// cast_leaf: the triangles of a node against the groups of a tile. A float test selects the rays that may pass
+// cast_leaf: tests the triangles of a node against the groups of a tile. A float test selects the rays that may pass
 // between the edges. These pairs of triangle and ray are decided a vector at a time, with a different triangle in
 // each lane. Contract: stages.h, cast.
 #ifndef GLINT_CAST_LEAF_H
@@ -21,7 +21,7 @@
 
 /// The triangles of one node, and the pairs that are still to be decided.
 typedef struct R(cast_leaf) {
-    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of the triangle in each slot
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< the corners of the triangle in each slot
     _Alignas(64) real origin[3][GLINT_PAIRS]; ///< the ray's origin, for each pair
     _Alignas(64) real direction[3][GLINT_PAIRS], t[GLINT_PAIRS];
     _Alignas(64) uint32_t slot[GLINT_PAIRS];
@@ -30,9 +30,11 @@ typedef struct R(cast_leaf) {
     const glint_node *node;
     unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
-    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< where each triangle may be visible: see screen_cells
-    R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< groups in which triangles may be visible
-    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the slot of the triangle
+    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< the pixels in which each triangle may be visible, in the
+        ///< format of screen_cells
+    R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the groups in which each triangle may be visible
+    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< for each element of `group`, the slot of the
+        ///< triangle
     int groups;
 } R(cast_leaf);
 
@@ -75,7 +77,7 @@ static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(ca
 }
 
 /// Computes the pixels of the tile in which each triangle may be visible; for a triangle seen edge-on, the pixels of
-/// its box. Returns the slots of `mask` that may be visible in any pixel.
+/// the triangle's box. Returns the slots of `mask` that may be visible in any pixel.
 static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_screen *seen, unsigned mask,
                                   R(cast_leaf) * leaf)
 {
@@ -88,7 +90,7 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
         for (int n = 1; n >= 0; n--) {
             const vf low = (f_load(leaf->shown.least[n] + i) - f_set(start[n])) * f_set(0.5f),
                      high = (f_load(leaf->shown.most[n] + i) - f_set(start[n])) * f_set(0.5f);
-            // rounded up and down; NaN: all of them
+            // rounded up and down; NaN selects all pixels
             const vi first =
                 i_sub(i_set(64), i_from_f(f_set(64) - f_min(f_max(low, f_set(0)), f_set((float)count[n]))));
             const vi end = i_from_f(f_max(f_min(high, f_set((float)(count[n] - 1))), f_set(-1)) + f_set(1));
@@ -100,13 +102,14 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     }
     for (unsigned bits = edge_on; bits; bits &= bits - 1) {
         const int slot = __builtin_ctz(bits);
-        leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first of four pixels to the last of them
+        leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first pixel of the first cell to the last
+            // pixel of the last cell
     }
     return mask | edge_on;
 }
 
-/// Finds the cells in which a triangle may be visible, for any pixel position; edge-on, the cells of its box. Returns
-/// false if there are none.
+/// Finds the cells in which a triangle may be visible, for pixels at any position; for a triangle seen edge-on, the
+/// cells of the triangle's box. Returns false if there are none.
 static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, const node_on_screen *seen, int slot,
                                         screen_cells *out)
 {
@@ -126,8 +129,8 @@ static inline bool R(cells_of_triangle)(const R(tile_cast) * tile, const R(cast_
     return true;
 }
 
-/// Computes the origin of the ray of a pair. own, a constant here and below: each ray has its own origin; otherwise
-/// all start at the eye.
+/// Computes the origin of the ray of a pair. own, a constant here and below: whether each ray has its own origin;
+/// otherwise all rays start at the eye.
 INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real ray_origin[3])
 {
     for (int k = 0; k < 3; k++)
@@ -144,8 +147,8 @@ INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * le
     return R(is_in_plane)(&flat, ray_origin, false);
 }
 
-/// Corrects the hits of pairs from i on. Triangles that share their planes with others are decided again; `through`:
-/// lanes whose rays pass between the edges.
+/// Corrects the hits of the pairs from number i on: decides triangles that share their planes with others again;
+/// `through`: lanes whose rays pass between the edges.
 INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, bool own, int i, unsigned through,
                                unsigned hits)
 {
@@ -166,8 +169,8 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
     return hits;
 }
 
-/// Stores hits that are nearer than all previous ones. near: for hits beyond it, no ray starts in the triangle's
-/// plane.
+/// Stores hits that are nearer than all previous hits. near: only for hits up to this distance, a ray may start in
+/// the triangle's plane.
 INNER void R(update_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;
@@ -183,12 +186,12 @@ INNER void R(update_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool o
         return;
     *best = t;
     *best_id = id;
-    __builtin_prefetch(&prims[id]); // for surface: only its corners have been read so far
+    __builtin_prefetch(&prims[id]); // for the stage surface: so far only the corners have been read
     tile->depth[at / GLINT_GROUP][at % GLINT_GROUP] = (float)(t * (real)args->geometry->scale) * (1 + 0x1p-22f);
     *moved |= (uint64_t)1 << at / GLINT_GROUP;
 }
 
-/// Computes the corners of VR pairs relative to their rays' origins, in units of the table.
+/// Computes, for VR pairs, the corners of the triangle relative to the ray's origin, in units of the table.
 INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool own, const double eye[3], int i, vr scale, vr p[3][3])
 {
     for (int k = 0; k < 3; k++) {

@@ -1,5 +1,5 @@
-// meet: the intersection of a ray and a surface. A float test rejects for a whole group; the decision is in `real`.
-// Contract: stages.h, cast.
+// meet: intersects rays with a surface. A float test rejects lanes of a whole group at a time; the remaining lanes
+// are decided in `real`. Contract: stages.h, cast.
 #ifndef GLINT_CAST_MEET_H
 #define GLINT_CAST_MEET_H
 
@@ -8,7 +8,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// |f|^2 - (r2 + r2_low) without cancellation.
+/// Computes |f|^2 - (r2 + r2_low) without cancellation.
 INNER vd d_exact_power(const vd f[3], vd r2, vd r2_low)
 {
     vd e0, e1, e2;
@@ -28,7 +28,7 @@ INNER vr R(exact_power)(const vr f[3], vr r2, vr r2_low)
 #endif
 }
 
-/// The constant of a sphere's radius, computed once for many rays; unused for other primitives.
+/// Values that depend on a sphere's radius, computed once for many rays; unused for other primitives.
 typedef struct R(ball) {
     vr scale, r2, r2_low;
 } R(ball);
@@ -53,7 +53,8 @@ INNER vr R(discriminant_afar)(const vr f[3], const vr d[3], vr ar2)
 }
 
 /// Returns the more accurate of two discriminants: within the sphere's width b^2 - a c, from further away a r^2 - |f
-/// x d|^2. Haines, Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither is accurate everywhere.
+/// x d|^2. Haines, Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second form; neither form is accurate
+/// everywhere.
 INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
 {
     vr bb = b * b, ar2 = a * r2;
@@ -61,7 +62,7 @@ INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
     if (!rm_bits(near))
         return R(discriminant_afar)(f, d, ar2);
     vr inner = bb - a * c;
-    if (rm_bits(near) == (1u << VR) - 1) // as for a ground seen from above: no cross product is needed
+    if (rm_bits(near) == (1u << VR) - 1) // for example a ground seen from above: no cross product is needed
         return inner;
     return r_select(near, inner, R(discriminant_afar)(f, d, ar2));
 }
@@ -90,8 +91,8 @@ INNER rm R(intersect_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, v
 
 // ---- The filter for rays with their own origins ----
 
-/// Returns the lanes of a group that come near the sphere. `f`: from its centre to the ray's origin; the distance of
-/// the ray is |f x d| / |d|. Written so that lanes with NaN and infinity stay.
+/// Returns the lanes of a group whose rays come near the sphere. `f`: from the sphere's centre to the ray's origin;
+/// the ray passes the centre at the distance |f x d| / |d|. Written so that lanes with NaN and infinity stay.
 static inline unsigned R(near_lanes)(const vf f[3], const vf d[3], vf limit2)
 {
     vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
@@ -119,12 +120,12 @@ typedef struct R(ray_group) {
     const float *origin[3]; ///< --precision float: the unchanged origins
 } R(ray_group);
 
-/// Sets everything except `direction`. `local`: these origins, by index_frame.
+/// Sets every field except `direction`. `local`: the same origins as index_frame computed them.
 static inline void R(set_origins)(const void *const point[3], size_t at, const float (*local)[GLINT_GROUP],
                                   R(ray_group) * rays)
 {
     rays->local = local;
-    for (int i = 0; i < GLINT_GROUP; i += VF) // the sum of the components bounds the length
+    for (int i = 0; i < GLINT_GROUP; i += VF) // the sum of the absolute components is an upper bound of the length
         f_store(rays->bound + i,
                 f_set(GLINT_FILTER_SLACK) * ((f_abs(f_load(rays->local[0] + i)) + f_abs(f_load(rays->local[1] + i))) +
                                              f_abs(f_load(rays->local[2] + i))));
@@ -140,7 +141,7 @@ static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_
     for (int k = 0; k < 3; k++)
         f[k] = f_load(rays->local[k] + i) - f_set(prim->filter_center[k]);
     return f_set(prim->filter_bound) + f_load(rays->bound + i);
-#else // if float decides, the filter must use the same f as the decision, with its full error
+#else // if float decides, the filter must use the same f as the decision, including the rounding error of f
     for (int k = 0; k < 3; k++)
         f[k] = f_load(rays->origin[k] + i);
     if (prim->kind != GLINT_PRIM_SPHERE)
@@ -152,7 +153,7 @@ static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_
 #endif
 }
 
-/// Returns the lanes of the group that pass near the primitive.
+/// Returns the lanes of the group whose rays pass near the primitive.
 static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
 {
     unsigned near = 0;
@@ -166,8 +167,9 @@ static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
     return near;
 }
 
-/// Returns the lanes of the group that may enter a box ahead, from `lower` to `upper` in the index's frame; inverse:
-/// of the directions. The error of the inverse is relative to the distance of the box along the ray.
+/// Returns the lanes of the group whose rays may enter the box from `lower` to `upper`, in the index's frame.
+/// inverse: one over the components of the directions; its error is relative to the distance of the box along the
+/// ray.
 static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT_GROUP], const float lower[3],
                                const float upper[3])
 {
@@ -181,7 +183,8 @@ static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT
         for (int k = 0; k < 3; k++) {
             const vf from = f_load(rays->local[k] + i), over = f_load(inverse[k] + i);
             const vf x = ((f_set(lower[k]) - from) - bound) * over, y = ((f_set(upper[k]) - from) + bound) * over;
-            enter = f_max(f_min(x, y), enter); // NaN, from 0 times infinity, is on the border: either answer is right
+            enter = f_max(f_min(x, y), enter); // NaN comes from 0 times infinity, for a ray along the border of the
+                // box: either answer is right
             leave = f_min(f_max(x, y), leave);
         }
         inside |= (~fm_bits(f_lt(leave * f_set(1 + WALK_SLACK), enter)) & ((1u << VF) - 1)) << i;
@@ -191,8 +194,8 @@ static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT
 
 // ---- The decision ----
 
-/// Returns the lanes of `tied` in which `id` is defined before the current hit. At t = inf (after float overflow)
-/// there is no hit to tie with: it stays a miss.
+/// Returns the lanes of `tied` in which the primitive `id` was defined before the primitive of the current hit. A
+/// lane at t = inf (after float overflow) has no current hit, and stays a miss.
 static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t *best, unsigned tied)
 {
     unsigned wins = 0;
@@ -218,7 +221,8 @@ INNER void R(update_nearest)(const glint_cast_args *args, size_t at, uint32_t id
     r_put_index(best_id, hit, id);
 }
 
-/// Computes f, from the primitive to the ray's origin: scaled for a sphere, unscaled for a plane.
+/// Computes f, the vector from the primitive's centre or point to the ray's origin: scaled for a sphere, unscaled for
+/// a plane.
 static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -238,8 +242,8 @@ static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
     return DOT(n, f);
 }
 
-/// Does the same for an origin on some surface, which rounding has moved: the height over a plane is 0 if it is
-/// within that error.
+/// Does the same for an origin on some surface, which rounding has moved: if the height over a plane is within this
+/// rounding error, the result is 0.
 static inline vr R(point_constant)(const vr f[3], const glint_prim *prim)
 {
     const vr c = R(offset_constant)(f, prim);
@@ -258,7 +262,7 @@ INNER rm R(intersect)(const vr f[3], vr c, const vr d[3], const glint_prim *prim
     return R(intersect_plane)(d, a, c, prim, t);
 }
 
-/// Starts a group: t is +inf in active lanes, and -inf in the others, where nothing is nearer.
+/// Starts a group: t is +inf in active lanes, and -inf in the other lanes, so that no hit is nearer there.
 static inline void R(start_group)(const glint_cast_args *args, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -282,7 +286,8 @@ static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
     }
 }
 
-/// Returns the farthest hit of a group in the index's units, rounded up; infinite while a ray has no hit.
+/// Returns the distance of the farthest hit of a group in the index's units, rounded up; infinite if any ray has no
+/// hit.
 static inline float R(farthest)(const glint_cast_args *args, size_t at)
 {
     _Alignas(64) real t[GLINT_GROUP];
@@ -293,7 +298,7 @@ static inline float R(farthest)(const glint_cast_args *args, size_t at)
     return group_highest(far) * (1 + 0x1p-22f);
 }
 
-/// The rounding error that float arithmetic adds in the traversal, in the index's units.
+/// Returns the rounding error that float arithmetic adds in the traversal, in the index's units.
 static inline float R(walk_slack)(const glint_geometry_table *geometry)
 {
 #if GLINT_REAL == 64

@@ -1,7 +1,7 @@
-// nearest: rays with their own origins against spheres. A float pass finds, for each ray, the sphere that it may
-// enter first, and the distance before which it cannot enter another. Then double decides the first sphere, one pair
-// per lane, for a full vector of rays. A ray is only tested against all spheres if it misses the first one, or hits
-// it beyond that distance. Contract: stages.h, cast.
+// nearest: tests rays with their own origins against spheres. A float pass finds, for each ray, the sphere that the
+// ray may enter first, and the distance before which it cannot enter any other sphere. Then the first spheres are
+// decided in double, a vector of pairs of ray and sphere at a time. A ray is only tested against all spheres if it
+// misses the first one, or hits it beyond that distance. Contract: stages.h, cast.
 #ifndef GLINT_CAST_NEAREST_H
 #define GLINT_CAST_NEAREST_H
 
@@ -9,15 +9,15 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_FEW 32 ///< primitives of a scene up to which it is tested without its index
+#define GLINT_FEW 32 ///< a scene with at most this number of primitives is tested without its index
 #define GLINT_RAY_PAIRS 64
 
-/// Bound of the float error of a distance between a ray and a sphere, relative to the lengths that it is computed
-/// from: one rounding each for origin, centre and direction, six for differences and products, three for quotient and
-/// square root.
+/// Error bound of a distance between a ray and a sphere in float, relative to the lengths that the distance is
+/// computed from: one rounding each for origin, centre and direction, six for differences and products, three for
+/// quotient and square root.
 #define NEAREST_SLACK 0x1p-20f
 
-/// Rays whose first candidate is known from the float pass, and the decisions that remain.
+/// The first candidate of each ray from the float pass, and the rays that remain to be decided otherwise.
 typedef struct R(ray_pairs) {
     _Alignas(64) real origin[3][GLINT_RAY_PAIRS], direction[3][GLINT_RAY_PAIRS];
     _Alignas(64) real center[3][GLINT_RAY_PAIRS], scale[GLINT_RAY_PAIRS];
@@ -25,7 +25,7 @@ typedef struct R(ray_pairs) {
     float next[GLINT_RAY_PAIRS]; ///< the distance before which the ray enters no other sphere, in the index's units
     uint32_t ray[GLINT_RAY_PAIRS], prim[GLINT_RAY_PAIRS];
     int count;
-    uint16_t undecided[GLINT_TILE_GROUPS]; ///< rays that must be decided against all primitives
+    uint16_t undecided[GLINT_TILE_GROUPS]; ///< rays that must be tested against all primitives, one bit per lane
 } R(ray_pairs);
 
 /// Returns the distance of a hit at t in the index's units, rounded up.
@@ -99,11 +99,12 @@ static inline void R(add_pair)(const glint_cast_args *args, R(ray_pairs) * pairs
         R(decide_ray_pairs)(args, pairs);
 }
 
-/// VF rays in float.
+/// A vector of VF rays in float.
 typedef struct R(float_rays) {
     vf origin[3], direction[3], bound;
     vf length, per_a; ///< |d|, 1 / |d|^2
-    fm usual; ///< origin and direction in the range in which float neither overflows nor underflows below
+    fm usual; ///< lanes whose origin and direction are in the range in which float neither overflows nor underflows
+        ///< in the functions below
 } R(float_rays);
 
 INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * out)
@@ -119,8 +120,8 @@ INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * 
     out->usual = fm_and(fm_and(f_lt(f_set(0x1p-40f), a), f_lt(a, f_set(0x1p40f))), f_lt(out->bound, f_set(1)));
 }
 
-/// Returns the lanes that may enter a sphere, or start inside of it. If there are any, *entry gets the least distance
-/// before entry, infinite in the other lanes, in the index's units.
+/// Returns the lanes that may enter a sphere, or start inside of it. If there are any, *entry gets a lower bound of
+/// the distance to the entry, in the index's units, infinite in the other lanes.
 INNER fm R(enter_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *entry)
 {
     vf f[3];
@@ -146,13 +147,13 @@ typedef struct R(first_hits) {
     unsigned usual;
 } R(first_hits);
 
-/// Finds the first sphere of `list` that each ray may enter, and the distance to the second.
+/// Finds the first sphere of `list` that each ray may enter, and the distance to the second such sphere.
 static inline void R(find_first)(const glint_cast_args *args, const R(ray_group) * rays, size_t at,
                                  const uint32_t *list, int count, R(first_hits) * out)
 {
     const uint32_t common = args->leaving && lanes_equal(args->leaving + at, args->leaving[at]) == 0xffff
                                 ? args->leaving[at]
-                                : GLINT_MISS; // the primitive that all of them leave
+                                : GLINT_MISS; // the primitive that all rays leave
     out->usual = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         R(float_rays) lanes;
@@ -196,8 +197,8 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
 /// Further data of a group's rays for traversal.
 typedef struct R(lone_rays) {
     _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP],
-        per_a[GLINT_GROUP]; ///< for d: 1 / d, |d|, 1 / |d|^2
-    unsigned usual; ///< the other lanes are out of float's range
+        per_a[GLINT_GROUP]; ///< for a direction d: 1 / d, |d|, 1 / |d|^2
+    unsigned usual; ///< lanes within float's range
 } R(lone_rays);
 
 static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * out)
@@ -216,9 +217,9 @@ static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * o
 
 /// The possible first hits of a group's rays so far, in the index's units.
 typedef struct R(first_balls) {
-    _Alignas(64) float far[GLINT_GROUP]; ///< upper bound of hits
+    _Alignas(64) float far[GLINT_GROUP]; ///< upper bound of the distance of the first hit
     float entry[2][GLINT_GROUP],
-        next[GLINT_GROUP]; ///< distances to the first two spheres that each ray may enter, and to the third
+        next[GLINT_GROUP]; ///< distances at which each ray may enter the first two spheres, and the third one
     uint32_t prim[2][GLINT_GROUP]; ///< the first two spheres; GLINT_MISS: none
 } R(first_balls);
 
@@ -236,7 +237,7 @@ static inline void R(begin_balls)(const glint_cast_args *args, size_t at, R(firs
     }
 }
 
-/// Stops the search of a ray beyond `far`.
+/// Limits the search along a ray to the distance `far`.
 static inline void R(limit_distance)(R(first_balls) * first, int lane, float far)
 {
     first->far[lane] = smaller(first->far[lane], far);
@@ -247,7 +248,7 @@ typedef struct R(lone_ray) {
     float origin[3], direction[3], inverse[3], length, per_a;
     float enter[3], leave[3]; ///< the origin, moved by its rounding error so that boxes begin earlier and end later
     int first[3]; ///< offsets in a node, in floats, of the box sides by which the ray may enter
-    int last[3]; ///< and by which it may leave
+    int last[3]; ///< offsets of the sides by which the ray may leave
     uint32_t leaving;
 } R(lone_ray);
 
@@ -291,14 +292,14 @@ static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone
     return inside;
 }
 
-/// Distances to the spheres of a node, one per slot.
+/// Distances along a ray to the spheres of a node, one per slot.
 typedef struct R(balls_on_ray) {
     _Alignas(64) float entry[GLINT_NODE_WIDTH]; ///< lower bound of the entry
     _Alignas(64) float sure[GLINT_NODE_WIDTH]; ///< upper bound of the entry; infinite: the ray may miss
 } R(balls_on_ray);
 
-/// The sphere that fills each box of a node: from its centre to the ray's origin, and bounds of its radius after
-/// rounding.
+/// The sphere that fills each box of a node: the vector from the sphere's centre to the ray's origin, and bounds of
+/// the radius after rounding.
 typedef struct R(boxed_balls) {
     vf f[3], least, most, margin;
 } R(boxed_balls);
@@ -383,7 +384,7 @@ static inline void R(note_balls)(const glint_node *node, unsigned mask, const R(
     }
 }
 
-/// Queues the remaining decisions of a group.
+/// Queues the pairs of a group that remain to be decided.
 static inline void R(pair_first)(const glint_cast_args *args, size_t at, unsigned lanes, const R(first_balls) * first,
                                  R(ray_pairs) * pairs)
 {

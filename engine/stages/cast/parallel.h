@@ -11,8 +11,8 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Aims the screen of the tile's parallel rays: it is perpendicular to them, and the position of a ray on it is the
-/// same at every depth.
+/// Aims the screen of the tile's parallel rays: the screen is perpendicular to the rays, so that a ray's position on
+/// it is the same at every depth.
 static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_geometry_table *geometry,
                                    screen_view *view)
 {
@@ -30,7 +30,8 @@ static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_
     finish_screen(view);
 }
 
-/// Prepares the lens for the screen. Directions change by up to `bend` across the view, so their spread grows.
+/// Prepares the lens for the screen. The lens changes directions by up to `bend`, so the spread of the directions
+/// grows.
 static void R(aim_lens)(const glint_cast_args *args, screen_view *view, R(tile_lens) * out)
 {
     const glint_camera_args *camera = args->camera;
@@ -64,7 +65,7 @@ static void R(aim_parallel)(const glint_cast_args *args, R(tile_cast) * tile, R(
     tile->parallel = tile->deep = true;
 }
 
-/// Returns whether rays of a lens may hit a plane; rays of an orthographic camera may.
+/// Returns whether rays through a lens may hit a plane; always true for an orthographic camera.
 static inline bool R(lens_sees_plane)(const R(tile_cast) * tile, const glint_prim *prim)
 {
     const glint_camera_args *camera = tile->args->camera;

@@ -1,6 +1,7 @@
-// pixels: hits of a camera's rays for pixels given one by one, as adaptive sampling gathers them. With few
-// primitives, each is tested against every ray. With many, the rays traverse the index together like those of a tile,
-// over a screen of smaller cells. Each cell knows the groups that have a ray in it. Contract: stages.h.
+// pixels: the hits of a camera's rays through pixels given one by one, as adaptive sampling selects them. If there
+// are few primitives, each is tested against every ray. If there are many, the rays traverse the index together like
+// the rays of a tile, over a screen of smaller cells. Each cell has a list of the groups with a ray in the cell.
+// Contract: stages.h.
 #ifndef GLINT_CAST_PIXELS_H
 #define GLINT_CAST_PIXELS_H
 
@@ -109,14 +110,14 @@ static void R(cast_planes_to_pixels)(R(tile_cast) * tile)
         }
 }
 
-/// Aims the screen, with cells for all pixels from the first to the last.
+/// Aims the screen, and chooses its cells so that they cover all pixels.
 static void R(aim_pixels)(const glint_cast_args *args, const glint_camera_args *around, R(tile_cast) * tile)
 {
     glint_cast_args whole = *args;
     whole.camera = around;
     R(aim_tile)(&whole, tile);
     tile->args = args;
-    tile->across = 1; // one group per row, in arrays
+    tile->across = 1; // one group per row; the directions are in arrays
     tile->scaled = tile->deep = true;
     for (int j = 0; j < 2; j++) {
         const double first = j ? around->y0 : around->x0, end = args->camera->end[j];
@@ -129,7 +130,7 @@ static void R(aim_pixels)(const glint_cast_args *args, const glint_camera_args *
             tile->far[y][x] = -HUGE_VALF;
 }
 
-/// Casts in a scene with many primitives. around: the camera for all pixels from the first to the last.
+/// Casts in a scene with many primitives. around: the camera of a rectangle that holds all pixels.
 static void R(cast_many_to_pixels)(const glint_cast_args *args, const glint_camera_args *around)
 {
     R(tile_cast) tile;

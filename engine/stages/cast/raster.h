@@ -1,5 +1,5 @@
-// scan: the nearest triangle of each ray of a tile, from a list of those that its pixels may show. Three edge
-// functions, linear over the picture, reject pixels; the decision is that of cast. Contract: stages.h.
+// scan: the nearest triangle of each ray of a tile, from a list of the triangles that the tile may show. Three edge
+// functions, linear over the picture, reject pixels; the remaining pixels are decided as in cast. Contract: stages.h.
 #ifndef GLINT_CAST_RASTER_H
 #define GLINT_CAST_RASTER_H
 
@@ -26,7 +26,7 @@ static inline unsigned raster_box(const glint_raster_entry *entry, int x, int y)
 typedef struct R(raster_tile) {
     const glint_raster_args *args;
     int across;
-    double first[2]; ///< the tile's first pixel, in the camera's units of half a pixel
+    double first[2]; ///< position of the tile's first pixel, in the camera's units of half a pixel
     _Alignas(64) float far[GLINT_TILE_GROUPS]; ///< as in tile_cast
     uint64_t stale;
 } R(raster_tile);
@@ -36,13 +36,13 @@ typedef struct R(raster_triangle) {
     const glint_prim *prim;
     uint32_t id;
     bool filtered;
-    real corner[3][3]; ///< from the eye, in units of the table
+    real corner[3][3]; ///< the corners relative to the eye, in units of the table
     float base[3], along_s[3], along_t[3],
         limit; ///< edge functions, relative to the tile's first pixel; a pixel is inside if none is below -limit
 } R(raster_triangle);
 
 /// Computes the edge functions of a triangle as linear functions of the pixel. p: the corners relative to the eye.
-/// Returns the orientation of its corners, 0 if it is uncertain.
+/// Returns the orientation of the corners, or 0 if it is uncertain.
 static int R(raster_edges)(const glint_camera_args *camera, double p[3][3], double base[3], double along_s[3],
                            double along_t[3], double rounding, double limit[3])
 {
@@ -89,7 +89,7 @@ static void R(make_raster_filter)(const R(raster_tile) * tile, R(raster_triangle
     double p[3][3], base[3], along_s[3], along_t[3], limit[3], most = 0;
     for (int j = 0; j < 9; j++)
         p[j / 3][j % 3] = triangle->corner[j / 3][j % 3];
-    if (camera->orthographic) // its rays are in world units
+    if (camera->orthographic) // an orthographic camera's rays are in world units
         for (int j = 0; j < 9; j++)
             p[j / 3][j % 3] /= tile->args->cast.geometry->scale;
     const int side = R(raster_edges)(camera, p, base, along_s, along_t, rounding, limit);
@@ -122,7 +122,7 @@ static inline unsigned R(raster_inside)(const R(raster_triangle) * triangle, int
     return inside;
 }
 
-/// Decides a triangle for the lanes of a group.
+/// Decides a triangle for lanes of a group.
 static inline bool R(decide_raster)(const R(raster_tile) * tile, const R(raster_triangle) * triangle, int x, int y,
                                     unsigned lanes)
 {

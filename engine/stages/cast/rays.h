@@ -1,7 +1,7 @@
-// cast_rays: the nearest hit of rays with any origins. In small scenes groups are tested against all primitives.
-// Otherwise the rays of a group traverse the index together while they are coherent (together.h), and then each on
-// its own. The rays of a tile of an orthographic camera, or of one with a lens, traverse it as one beam (parallel.h).
-// Contract: stages.h.
+// cast_rays: the nearest hit of rays with any origins. In small scenes, groups of rays are tested against all
+// primitives. Otherwise the rays of a group traverse the index together while they are coherent (together.h), and
+// then each on its own. The rays of a tile of an orthographic camera, or of a camera with a lens, traverse the index
+// as one beam (parallel.h). Contract: stages.h.
 #ifndef GLINT_CAST_RAYS_H
 #define GLINT_CAST_RAYS_H
 
@@ -16,8 +16,8 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Computes t where rays that enter a sphere or solid leave it. They always do, because it is convex. For a form
-/// without an inside, they may hit its other side.
+/// Computes t where rays that enter a sphere or solid leave it. They always leave it, because it is convex. Rays that
+/// start on a form without an inside may hit its other side.
 static inline rm R(exit_t)(const glint_geometry_table *table, const glint_prim *prim, const vr o[3], const vr d[3],
                            vr *t)
 {
@@ -40,7 +40,7 @@ static inline rm R(exit_t)(const glint_geometry_table *table, const glint_prim *
     return all;
 }
 
-/// Computes t where rays that leave a torus hit it again; inward: rays that go inside, which always do.
+/// Computes t where rays that leave a torus hit it again; inward: rays that go inside, which always hit it again.
 static inline rm R(reentry_t)(const glint_solid *solid, const glint_prim *prim, const vr o[3], const vr d[3],
                               unsigned inward, vr *t)
 {
@@ -51,8 +51,8 @@ static inline rm R(reentry_t)(const glint_solid *solid, const glint_prim *prim, 
     return R(intersect_torus)(solid, f, e, start, t);
 }
 
-/// Returns whether a ray that passes through the surface may hit it again. A part of a combined solid is hit only
-/// through that solid.
+/// Returns whether a ray that passes through the surface may hit it again. Rays hit a part of a combined solid only
+/// by way of that solid.
 static inline bool R(has_inside)(const glint_geometry_table *table, uint32_t id)
 {
     if (id >= table->prim_count)
@@ -62,8 +62,8 @@ static inline bool R(has_inside)(const glint_geometry_table *table, uint32_t id)
            (prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form != GLINT_FORM_DISK);
 }
 
-/// Tests the rays of a group that may hit the primitive that they start on: rays that start inside of it, and all
-/// rays that leave a torus.
+/// Tests the rays of a group that may hit the primitive that they start on: rays that go into it, and all rays that
+/// leave a torus.
 static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
 {
     const glint_geometry_table *table = args->geometry;
@@ -93,7 +93,7 @@ static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
     }
 }
 
-/// Decides one primitive for the lanes of a group in `near`. Returns whether any hit was stored.
+/// Decides one primitive for the lanes `near` of a group. Returns whether any hit was stored.
 static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint32_t id, unsigned near)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -154,8 +154,8 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         R(decide_rays)(args, g, id, near);
 }
 
-/// Traverses the index with one ray. Primitives that it may hit are tested against its whole group, whose rays are
-/// often similar.
+/// Traverses the index with one ray. Primitives that the ray may hit are tested against the ray's whole group,
+/// because rays of a group are often similar.
 static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, int lane)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -187,7 +187,7 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
 }
 
 
-#define LENS_BEAM 8 ///< radius over focus distance, above which the rays of a tile are not coherent
+#define LENS_BEAM 8 ///< if radius / focus distance of the lens is above this, the rays of a tile are not coherent
 
 /// Returns whether the rays traverse the index as one beam.
 static inline bool R(is_beam)(const glint_camera_args *camera)
@@ -195,7 +195,7 @@ static inline bool R(is_beam)(const glint_camera_args *camera)
     return camera && !(camera->lens && camera->lens->radius * camera->lens->per_focus > LENS_BEAM);
 }
 
-/// Prepares a group's rays for filter and traversal. local: memory for their origins.
+/// Prepares a group's rays for filter and traversal. local: memory for the origins of the rays.
 static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                      R(ray_group) * rays)
 {
@@ -206,8 +206,8 @@ static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, fl
         R(narrow)((const real *)args->direction[k] + at, rays->direction[k]);
 }
 
-/// Starts a group with the hits found without the index: on primitives that contain the origins, and on unbounded
-/// ones. Returns false if there are no rays.
+/// Starts a group with the hits that need no index: on the primitives that the rays start on, and on unbounded
+/// primitives. Returns false if there are no rays.
 static inline bool R(begin_rays)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                  R(ray_group) * rays)
 {
@@ -223,7 +223,7 @@ static inline bool R(begin_rays)(const glint_cast_args *args, uint32_t g, float 
     return true;
 }
 
-/// The primitives of a small index: spheres from the front of the list on, others from its end.
+/// The primitives of a small index: spheres are listed from the front on, other primitives from the end backwards.
 typedef struct R(few_prims) {
     uint32_t id[GLINT_FEW];
     int spheres, others;

@@ -1,8 +1,8 @@
-// rounds: incoherent rays among triangles and solids. The rays of a group traverse the index in rounds, one node each
-// per round. The triangles that they reach are decided in double, a vector of pairs of ray and triangle at a time,
-// with a different pair in each lane. Lanes that may be subject to the rules of shared edges are left to decide_rays.
-// A solid is decided for all rays that reach it in the same round. If there are only spheres, nothing is decided
-// during traversal, and rays are traversed one after the other. Contract: stages.h, cast.
+// rounds: traverses incoherent rays in scenes with triangles and solids. The rays of a group traverse the index in
+// rounds, one node each per round. The triangles that they reach are decided in double, a vector of pairs of ray and
+// triangle at a time, with a different pair in each lane. Pairs to which the rules of shared edges may apply are left
+// to decide_rays. A solid is decided for all rays that reach it in the same round. If there are only spheres, hits
+// are not decided during traversal, and rays are traversed one after the other. Contract: stages.h, cast.
 #ifndef GLINT_CAST_ROUNDS_H
 #define GLINT_CAST_ROUNDS_H
 
@@ -17,19 +17,19 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_ROUND_PAIRS 96 ///< per round, a multiple of any VR
+#define GLINT_ROUND_PAIRS 96 ///< maximum number of pairs per round, a multiple of any VR
 #define GLINT_ROUND_SOLIDS 64 ///< per round
 #define GLINT_STACKED_NODES_MAX 48 ///< maximum number of nodes that a group leaves to each of its rays, see together.h
 
-/// The rays of a group in triangle space: components in the cyclic order that puts the direction's largest component
-/// last, see edges_along. Every lane then has the same order of operations, and the bits are those of the lane's own
-/// order.
+/// The rays of a group in triangle space: their components are in the cyclic order that puts the direction's largest
+/// component last, see edges_along. Then the same operations work for every lane, and give the same bits as in the
+/// lane's original order.
 typedef struct R(permuted_rays) {
     _Alignas(64) real origin[3][GLINT_GROUP], direction[3][GLINT_GROUP];
-    uint8_t axis[GLINT_GROUP]; ///< axis of the world of the last component
+    uint8_t axis[GLINT_GROUP]; ///< the axis of the world that became the last component
 } R(permuted_rays);
 
-/// The nodes that a ray has yet to visit, and where it enters them.
+/// The nodes that a ray has yet to visit, and the distances at which the ray enters them.
 typedef struct R(node_stack) {
     int height;
     /// With space for the entries behind the packed
@@ -40,7 +40,8 @@ typedef struct R(node_stack) {
 typedef struct R(rounds) {
     R(permuted_rays) permuted;
     _Alignas(64) uint32_t lane[GLINT_ROUND_PAIRS], prim[GLINT_ROUND_PAIRS]; ///< the pairs
-    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< of the triangle of each pair, permuted like its ray
+    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< the corners of each pair's triangle, permuted like the
+        ///< pair's ray
     int count;
     uint32_t solid[GLINT_ROUND_SOLIDS]; ///< primitives other than triangles and spheres
     uint32_t rays[GLINT_ROUND_SOLIDS]; ///< rays that reached each solid, one bit per lane
@@ -70,7 +71,7 @@ static inline void R(permute_rays)(const glint_cast_args *args, size_t at, unsig
     }
 }
 
-/// Loads the corners of all pairs. The last vector is filled with pairs whose results are not read.
+/// Loads the corners of all pairs. The last vector is filled up with pairs whose results are not read.
 static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds) * rounds)
 {
     for (int n = 0; n < rounds->count; n++) {
@@ -90,7 +91,7 @@ static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds)
 }
 
 /// Returns the lanes whose rays certainly start off the triangle's plane. The bound of intersect_shared_edge applies:
-/// it is twice the rounding error of a height, which covers the different order of terms here.
+/// the bound is twice the rounding error of a height, so it also covers the different order of terms here.
 static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr corner[3][3], const vr o[3])
 {
     const vr scale = r_set(table->scale), far = r_set((real)(2 * GLINT_POINT_SLACK * table->extent));
@@ -111,10 +112,11 @@ static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr
 
 /// The results of VR pairs of ray and triangle, one bit each.
 typedef struct R(round_lanes) {
-    _Alignas(64) real t[VR]; ///< distances to the planes of the corners
-    unsigned at; ///< the line passes the triangle, within the error of the ray's origin; other lanes do not hit it
+    _Alignas(64) real t[VR]; ///< t where each ray hits the plane of the triangle's corners
+    unsigned at; ///< lanes whose line passes through the triangle, within the error of the ray's origin; other lanes
+        ///< miss the triangle
     unsigned plain; ///< lanes of `at` that certainly pass through the triangle and certainly start off its plane
-    unsigned off; ///< all lanes that certainly start off the plane
+    unsigned off; ///< all lanes whose ray certainly starts off the plane
 } R(round_lanes);
 
 /// Tests the pairs from number i on.
@@ -156,7 +158,7 @@ static inline real R(t_of_face)(const glint_cast_args *args, const glint_face *f
 }
 
 /// Decides the pairs, and lowers the upper bounds of hits. Unless the distance is short, a ray that certainly starts
-/// off the plane neither leaves the triangle by a shared edge nor starts on it.
+/// off the plane of a triangle does not start on that triangle, nor on another one at a shared edge.
 static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args *args, uint32_t g, R(rounds) * rounds)
 {
     const glint_geometry_table *table = args->geometry;
@@ -238,7 +240,8 @@ static inline void R(intersect_others)(const glint_geometry_table *geometry, con
 static inline unsigned R(add_to_round)(const glint_geometry_table *geometry, const glint_node *node, unsigned mask,
                                        int lane, R(rounds) * rounds)
 {
-    const uint32_t leaving = rounds->ray[lane].leaving; // the primitive that the ray leaves is not hit: see cast_on_own
+    const uint32_t leaving = rounds->ray[lane].leaving; // skipped here, because cast_on_own tests the primitive that
+        // the ray leaves
     unsigned others = 0;
     int n = rounds->count;
 #ifdef GLINT_PACKS
@@ -270,7 +273,7 @@ static inline void R(push_nodes)(const glint_node *node, const float depth[GLINT
 {
     int n = stack->height;
 #ifdef GLINT_PACKS
-    // without a branch, even if there is no node: the entries above the top are not read
+    // no branch is needed if there is no node, because entries above the top are never read
     const vf own = f_select(fm_from_bits(mask), f_load(depth), f_set(HUGE_VALF));
     const float nearest = f_min_all(own);
     const unsigned first = mask & fm_bits(f_eq(own, f_set(nearest))), top = first & -first;
@@ -334,7 +337,7 @@ static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *a
     }
 }
 
-/// Continues the traversal of one ray in float, in an index with spheres only.
+/// Continues the traversal of one ray in float, in an index that only has spheres.
 static void R(walk_lone_ray)(const glint_cast_args *args, int lane, R(rounds) * rounds)
 {
     const glint_geometry_table *geometry = args->geometry;

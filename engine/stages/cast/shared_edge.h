@@ -1,6 +1,6 @@
-// shared_edge: rays that leave a triangle by an edge or corner, and the triangles that share it. Rounding puts the
-// ray's origin on either side of those triangles. The relative position of the two triangles decides whether the ray
-// hits them. Contract: stages.h.
+// shared_edge: rays that leave a triangle by an edge or corner, and the triangles that share that edge or corner.
+// Rounding can put the ray's origin on either side of these triangles. The relative position of the two triangles
+// decides whether the ray hits the second one. Contract: stages.h.
 #ifndef GLINT_CAST_SHARED_EDGE_H
 #define GLINT_CAST_SHARED_EDGE_H
 
@@ -34,7 +34,7 @@ static inline R(flat) R(flat_of)(const glint_prim *prim, double scale)
     return out;
 }
 
-/// Computes the height of a point over the plane, and its rounding error.
+/// Computes the height of a point over the plane, and the rounding error of the height.
 static inline real R(height_over)(const R(flat) * flat, const real at[3], real *rounding)
 {
     real q[3];
@@ -58,8 +58,8 @@ static inline real R(size_of_all)(const real v[3])
     return most;
 }
 
-/// Returns whether a point is in the triangle's plane within rounding. on_surface: the point is on some surface, and
-/// has the rounding error of such points.
+/// Returns whether a point is in the triangle's plane within rounding. on_surface: whether the point was computed on
+/// some surface, and has the rounding error of such points.
 static inline bool R(is_in_plane)(const R(flat) * flat, const real point[3], bool on_surface)
 {
     real rounding;
@@ -72,8 +72,8 @@ static inline real R(near_shared_edge)(const glint_geometry_table *table)
     return (real)(GLINT_NEAR_SHARED_EDGE * table->extent);
 }
 
-/// Removes hits where a ray starts on the triangle. o: origins of the rays of `hit`; leaving: the primitives that
-/// they start on, or NULL.
+/// Removes hits where a ray starts on the triangle. o: origins of the rays of `hit`; leaving: the primitives that the
+/// rays start on, or NULL.
 static inline rm R(unless_begun_on)(const glint_geometry_table *table, const glint_prim *prim, const uint32_t *leaving,
                                     const vr o[3], rm hit, vr t)
 {
@@ -109,7 +109,7 @@ static inline bool R(reaches)(const R(flat) * flat, real side, const R(flat) * o
     return false;
 }
 
-/// Returns the rounding error of a point of the triangle, per component.
+/// Returns the rounding error of a computed point on the triangle, per component.
 static inline real R(point_slack_of)(const R(flat) * flat, const real o[3])
 {
     real f = 0, g = 0, p = 0;
@@ -123,8 +123,9 @@ static inline real R(point_slack_of)(const R(flat) * flat, const real o[3])
     return (real)GLINT_POINT_SLACK * ((f + g) + p);
 }
 
-/// Returns whether the ray is at the triangle at t = `t`, within the error of its origin: on the same side of all
-/// edges, and within its bounds. For a triangle seen edge-on, all edges are near.
+/// Returns whether the point of the ray at t = `t` is on the triangle, within the error of the ray's origin: on the
+/// same side of all edges, and within the bounds of the corners. For a triangle seen edge-on, the ray is near all
+/// edges.
 static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const real d[3], real t, real slack,
                                   double scale)
 {
@@ -164,29 +165,29 @@ static inline bool R(goes_through)(const R(flat) * from, const R(flat) * other, 
 }
 
 /// Returns whether a ray that starts on `from` is still in its plane, within rounding, when it hits another plane at
-/// t = `t`. Rays at a grazing angle may start on the wrong side of `from` and pass an edge there.
+/// t = `t`. A ray at a grazing angle may start on the wrong side of `from` and pass an edge on that side.
 static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real slack, real t)
 {
     return t * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
 }
 
-/// Returns the lanes whose lines pass the triangle, within the error of their origins.
+/// Returns the lanes whose lines pass through the triangle, within the error of the rays' origins.
 static inline unsigned R(at_triangle)(const glint_geometry_table *table, const R(ray_edges) * edges)
 {
-    // above every `loose`: the sizes that it is computed from are at most 12 extents
+    // an upper bound of every `loose`: the sizes that `loose` is computed from are at most 12 extents
     const vr move = R(abs)(edges->dz) * r_set((real)(13 * GLINT_POINT_SLACK * table->extent * table->scale));
     return rm_bits(R(within)(edges, move * (edges->reach + r_set(2) * move)));
 }
 
-/// Returns the lanes of at_triangle that may reach it.
+/// Returns the lanes of at_triangle whose rays may reach the triangle.
 static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(ray_edges) * edges, vr t)
 {
     return R(at_triangle)(table, edges) & rm_bits(r_lt(r_set(0), t));
 }
 
-/// Decides again the lanes that are in the plane of the triangle which they leave and in the plane of this one, and
-/// the lanes that pass near this one's edge. `at`: the first lane of the vector; `own`: lanes that leave this
-/// triangle; `edges`: with reach.
+/// Decides two kinds of lanes again: rays that lie in the plane of the triangle that they leave and in the plane of
+/// this triangle, and rays that pass near an edge of this triangle. `at`: the first lane of the vector; `own`: lanes
+/// whose rays leave this triangle; `edges`: `reach` must be set.
 static inline rm R(intersect_shared_edge)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
                                           const R(flat) * flat, const R(ray_edges) * edges, rm hit, vr *t)
 {
@@ -194,7 +195,7 @@ static inline rm R(intersect_shared_edge)(const glint_cast_args *args, size_t at
     const real *const m = flat->m;
     const real spread = R(spread_of)(flat);
     const real far = (real)(2 * GLINT_POINT_SLACK * table->extent);
-    // above every bound: points, corners and their differences are at most 2 extents
+    // an upper bound of all error bounds: points, corners and their differences are at most 2 extents
     const real most = far * (5 * spread + 2 * ((flat->size[0] + flat->size[1]) + flat->size[2]));
     vr q[3];
     for (int k = 0; k < 3; k++)

@@ -1,5 +1,5 @@
-// slot: a primitive in a slot of a node, except a triangle, against the groups of a tile in which it may be visible.
-// Contract: stages.h, cast.
+// slot: tests a primitive in a slot of a node, except a triangle, against the groups of a tile in which the primitive
+// may be visible. Contract: stages.h, cast.
 #ifndef GLINT_CAST_SLOT_H
 #define GLINT_CAST_SLOT_H
 
@@ -11,7 +11,8 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Finds the groups that come near the primitive. Returns their number. Constants: rods: it may be longer than wide.
+/// Finds the groups with rays that come near the primitive. Returns the number of these groups. rods, a constant: the
+/// primitive may be longer than wide.
 INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
                               const node_on_screen *seen, int slot, const bool rods, R(near_group) * out)
 {
@@ -45,13 +46,13 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
 
 // ---- A sphere ----
 
-/// VR lanes of a group that a sphere comes near.
+/// VR lanes of a group, some of whose rays come near a sphere.
 typedef struct R(near_part) {
-    uint16_t at; ///< the first lane, in the tile
-    uint16_t across, down; ///< offsets of the two parts of their directions, see group_directions
+    uint16_t at; ///< number of the first lane in the tile
+    uint16_t across, down; ///< offsets of the two summands of the directions, see group_directions
 } R(near_part);
 
-/// Lists the vectors of the groups that have lanes. Returns their number.
+/// Lists the vectors of the groups in which any lane is near. Returns the number of vectors.
 INNER int R(find_near_parts)(const R(tile_cast) * tile, const R(near_group) * groups, int count, R(near_part) * out)
 {
     int parts = 0;
@@ -65,7 +66,7 @@ INNER int R(find_near_parts)(const R(tile_cast) * tile, const R(near_group) * gr
     return parts;
 }
 
-/// Decides the sphere for rays from one eye.
+/// Decides the sphere for rays from the eye.
 INNER void R(decide_ball_of_eye)(const glint_cast_args *args, uint32_t id, const R(near_part) * parts, int count)
 {
     R(candidate) ball;

@@ -14,10 +14,10 @@
 typedef struct R(span) {
     vr t[2];
     rm hit;
-    rm second; ///< t[1] is a hit: for an open form, through the side
-    rm flat[2]; ///< whether each end is on a face of a slab, not on the curved side
-    vr face[2]; ///< the face: 1 + its axis in the space of the unit shape, negative if its outward normal points down
-        ///< that axis
+    rm second; ///< t[1] is a hit: for an open form, a hit of the curved side
+    rm flat[2]; ///< lanes in which each end is on a flat face, not on the curved side
+    vr face[2]; ///< the face: 1 + its axis in the space of the unit shape, negative if the face's outward normal
+        ///< points in the negative direction of that axis
 } R(span);
 
 static inline void R(to_unit)(const glint_solid *solid, const vr v[3], vr out[3])
@@ -37,9 +37,10 @@ static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *pr
 
 /// The constants of a solid that depend on the rays' origins.
 typedef struct R(solid_start) {
-    vr f[3]; ///< from the centre, in the space of the unit shape; unused for a box
+    vr f[3]; ///< vector from the centre to the origin, in the space of the unit shape; unused for a box
     const vr *origin; ///< the rays' origins
-    const real *height; ///< over the faces, for rays with one origin; NULL: computed when slabs are cut
+    const real *height; ///< heights of the origin over the faces, if all rays have the same origin; NULL: cut_by_slab
+        ///< computes the heights
 } R(solid_start);
 
 static inline void R(start_at)(const glint_solid *solid, const glint_prim *prim, const vr origin[3],
@@ -58,7 +59,7 @@ static inline real R(first_lane)(vr x)
     return lanes[0];
 }
 
-/// Computes the same data as numbers, for rays that all start at the eye, also for a box.
+/// Computes the same data for rays that all start at the eye, as single numbers instead of vectors, also for a box.
 static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, const double eye[3], real f[3],
                             real height[6])
 {
@@ -71,8 +72,8 @@ static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, co
         height[i] = R(first_lane)(R(face_height)(&solid->faces[i], origin));
 }
 
-/// Clips the span to a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
-/// span->face is wanted, too.
+/// Clips the span to a pair of faces; `axis`: the axis of the unit shape that the faces are perpendicular to. flats:
+/// whether span->flat is wanted; faces, a constant: whether span->face is wanted, too.
 INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3], int slab,
                           int axis, const bool flats, const bool faces)
 {
@@ -101,7 +102,7 @@ INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(soli
     span->t[1] = r_min(leave, span->t[1]);
 }
 
-/// Returns whether no ray can hit the rest of the span.
+/// Returns whether no ray can hit the solid, given the span that is left.
 INNER bool R(is_spent)(R(span) * span)
 {
     span->hit = rm_and(span->hit, rm_and(r_le(span->t[0], span->t[1]), r_lt(r_set(0), span->t[1])));
@@ -129,14 +130,15 @@ INNER void R(cut_by_disk)(R(span) * span, const glint_solid *solid, const R(soli
     span->hit = r_le(x * x + y * y, r_set(1));
 }
 
-/// The inequality a t^2 - 2 b t + c <= 0 and its roots: for b >= 0 the far root is q / a, the other c / q; otherwise
-/// the other way round.
+/// The inequality a t^2 - 2 b t + c <= 0 and its roots. For b >= 0 the far root is q / a and the near root is c / q;
+/// for b < 0 it is the other way round.
 typedef struct R(quadratic) {
     vr a, b, c, disc, s, q;
-    rm ahead, along; ///< b >= 0; parallel to the axis of a cylinder: fully inside or outside
+    rm ahead, along; ///< ahead: lanes with b >= 0; along: lanes whose ray is parallel to the axis of a cylinder, and
+        ///< fully inside or outside
 } R(quadratic);
 
-/// Computes the roots for a sphere (three axes) or cylinder (two). magnitude: of the solid.
+/// Computes the roots for a sphere (three axes) or cylinder (two). magnitude: the field of the solid.
 INNER R(quadratic) R(quadratic_of)(const vr f[3], const vr e[3], bool ball, double magnitude)
 {
     const vr zero = r_set(0), one = r_set(1);
@@ -163,7 +165,7 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
 {
     const R(quadratic) round = R(quadratic_of)(f, e, ball, magnitude);
     const vr far = round.q / round.a, other = round.c / round.q, zero = r_set(0);
-    // in order despite rounding: a solid seen from far away may be thinner than the rounding error
+    // puts the ends in order: a solid seen from far away may be thinner than the rounding error
     span->t[0] = r_select(round.along, r_set(-HUGE_VAL), r_min(far, other));
     span->t[1] = r_select(round.along, r_set(HUGE_VAL), r_max(far, other));
     span->hit = rm_or(rm_and(round.along, r_le(round.c, zero)), rm_andnot(r_le(zero, round.disc), round.along));
@@ -172,9 +174,9 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
 /// Clips the span to the cone x^2 + y^2 <= z^2, z >= 0, with the apex at the origin.
 ///
 /// The coefficients are differences of squares. If the squares of the origin are far greater than those of any hit,
-/// too few digits are left: for rays from far away, and for rays down the side of either half that pass the apex at
-/// no more than about a third of their origin's distance from it. Such rays restart at the point nearest to the apex,
-/// except for rays that start on the side.
+/// too few digits are left: for rays from far away, and for rays along the side of either half of the double cone
+/// that pass the apex at less than about a third of the origin's distance from the apex. Such rays are moved to start
+/// at their point nearest to the apex, except for rays that start on the side.
 INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double magnitude)
 {
     const vr zero = r_set(0), toward = DOT(from, e), e2 = DOT(e, e), away2 = DOT(from, from);
@@ -192,11 +194,11 @@ INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double m
     const vr s = r_sqrt(r_max(disc, zero));
     const rm ahead = r_le(zero, b), steep = r_lt(a, zero), level = rm_andnot(r_le(a, zero), steep);
     const vr q = r_select(ahead, b + s, b - s);
-    const vr far = q / a, other = r_select(r_eq(q, zero), far, c / q); // through the apex, both are 0
+    const vr far = q / a, other = r_select(r_eq(q, zero), far, c / q); // for a ray through the apex, both are 0
     const vr low = r_min(far, other), high = r_max(far, other), single = c / (r_set(2) * b);
     const rm up = r_lt(zero, e[2]);
-    // steeper than the side: one end is on the other half of the double cone; parallel to the side: there is only
-    // one, on either half
+    // for a ray steeper than the side, one end is on the other half of the double cone; a ray parallel to the side
+    // has only one end, on either half
     const rm ours = rm_or(rm_and(up, r_lt(zero, b)), rm_andnot(r_lt(b, zero), up));
     const vr end = r_select(level, single, r_select(up, high, low));
     const rm open = rm_or(steep, level);
@@ -205,7 +207,8 @@ INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double m
     span->hit = rm_or(rm_or(steep, rm_and(level, ours)), rm_andnot(r_le(zero, disc), level));
 }
 
-/// Removes the faces of a cylinder or cone: rays that passed through a face hit the side once or not at all.
+/// Removes the flat ends of a cylinder or cone: a ray that passes through a flat end hits the side once or not at
+/// all.
 INNER void R(open_ends)(R(span) * span)
 {
     const rm none = rm_from_bits(0);
@@ -218,7 +221,8 @@ INNER void R(open_ends)(R(span) * span)
 }
 
 /// Computes the span of rays from `start` along d in the world, and e in the space of the unit shape; a box does not
-/// need e. faces, whole: constants. Not whole: if no ray hits the solid ahead, only `hit` is defined.
+/// need e. `faces` and `whole` are constants. If `whole` is false and no ray hits the solid ahead, only `hit` is
+/// defined.
 INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], const vr e[3],
                          const bool faces, const bool whole)
 {
@@ -302,7 +306,8 @@ static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
     g[2] = cone ? r_set(-1) : r_set(0);
 }
 
-/// Sets the exact coordinate for points on a face along two axes of the world. face: of the unit shape, where `flat`.
+/// Sets the exact coordinate of points on a face along two axes of the world. face: the face of the unit shape, in
+/// the lanes of `flat`.
 static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr face[3], vr p[3])
 {
     const int slabs = glint_slab_count(solid->form);
@@ -318,8 +323,8 @@ static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr fac
     }
 }
 
-/// Projects a point next to the unit shape's surface onto it. which: the face, as in span; flat: it is on a face. g:
-/// the outward normal there; face: the number of the face.
+/// Projects a point next to the unit shape's surface onto it. which: the face, as in span; flat: the lanes whose
+/// point is on a face. g: the outward normal there; face: the number of the face.
 INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr face[3])
 {
     const bool round = form != GLINT_FORM_BOX && form != GLINT_FORM_DISK;
@@ -337,7 +342,7 @@ INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr f
     }
     if (form == GLINT_FORM_DISK)
         k[2] = r_set(0);
-    else if (form == GLINT_FORM_CONE) // its apex is at 0
+    else if (form == GLINT_FORM_CONE) // the apex is at the origin
         k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
 }
 
@@ -378,9 +383,9 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
     R(normal_of)(solid, g, n);
 }
 
-/// Returns the lanes whose segments from `point` along d cross the surface. Segments end at 1 / scale; directional:
-/// never. Segments in lanes of `own` start on the solid and go inside, so they can only hit the other side of an open
-/// form.
+/// Returns the lanes whose segments from `point` along d cross the surface. Segments end at t = 1 / scale; if
+/// `directional` is set, they never end. Segments in lanes of `own` start on the solid and go inside, so they can
+/// only hit the other side of an open form.
 static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
                                  double scale, bool directional, rm own)
 {

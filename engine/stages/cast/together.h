@@ -1,7 +1,7 @@
 // together: traverses the index with a whole group of rays while they stay coherent, for example after reflection in
 // a flat mirror, or from a small part of a lens. Each node is tested twice: first against the bounds of the whole
-// group, then each surviving child against every ray. A node is left to the rays one by one (rounds.h) if few rays
-// reach it, or if more children than rays survive. Contract: stages.h, cast.
+// group, then each surviving child against every ray. The rays visit a node one by one (rounds.h) if few rays reach
+// it, or if more children than rays survive the tests. Contract: stages.h, cast.
 #ifndef GLINT_CAST_TOGETHER_H
 #define GLINT_CAST_TOGETHER_H
 
@@ -13,20 +13,21 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_FEW_LANES 3 ///< up to this number of rays, each is traversed on its own
+#define GLINT_FEW_LANES 3 ///< if a node has at most this number of rays, each ray traverses it on its own
 
-/// Bounds of the tests of boxes_of_lone_ray over all rays of a group. There is no bound along an axis with both signs
-/// of direction.
+/// Bounds, over all rays of a group, of the values that boxes_of_lone_ray computes. An axis along which the rays have
+/// both signs of direction has no bound.
 typedef struct R(common_slabs) {
-    float enter[3], leave[3]; ///< subtracted from the sides by which rays enter and leave
+    float enter[3], leave[3]; ///< bounds of the origins, to be subtracted from the box sides by which rays enter and
+        ///< leave
     float gentle[3], steep[3]; ///< inverse directions with the smallest and the largest magnitude; the largest may be
         ///< infinite
-    int first[3], last[3]; ///< offsets of these sides in a node, in floats
+    int first[3], last[3]; ///< offsets in a node, in floats, of the sides by which rays enter and leave
 } R(common_slabs);
 
 /// A node that rays of a group have yet to visit.
 typedef struct R(common_node) {
-    _Alignas(64) float depth[GLINT_GROUP]; ///< where each ray enters it
+    _Alignas(64) float depth[GLINT_GROUP]; ///< distance at which each ray enters the node
     uint32_t node;
     unsigned lanes;
 } R(common_node);
@@ -45,7 +46,7 @@ typedef struct R(common_walk) {
 
 // ---- Bounds of the group ----
 
-/// Computes the minimum and maximum of the numbers in `lanes`, which are not empty.
+/// Computes the minimum and maximum of the numbers in `lanes`, of which there is at least one.
 static inline void R(range_in)(const float x[GLINT_GROUP], unsigned lanes, float *least, float *most)
 {
     vf low = f_set(HUGE_VALF), high = f_set(-HUGE_VALF);
@@ -84,7 +85,7 @@ static inline void R(find_common_slabs)(const R(common_walk) * walk, unsigned la
 }
 
 /// Returns the boxes that some ray may enter before `far`; depth: lower bound of the entry over all rays. Rounding is
-/// monotonic, so each product bounds the products of all rays after rounding.
+/// monotonic, so each rounded product is a bound of the rounded products of all rays.
 static inline unsigned R(boxes_in_slabs)(const glint_node *node, const R(common_slabs) * slabs, float far,
                                          float depth[GLINT_NODE_WIDTH])
 {
@@ -106,8 +107,8 @@ static inline unsigned R(boxes_in_slabs)(const glint_node *node, const R(common_
 
 // ---- Single rays of the group ----
 
-/// Returns the rays that may enter the box in a slot of a node before their `far`, and computes where: like
-/// boxes_of_lone_ray.
+/// Returns the rays that may enter the box in a slot of a node before their `far`, and computes the distances of
+/// entry, like boxes_of_lone_ray.
 static inline unsigned R(rays_in_slot)(const glint_node *node, int slot, const R(common_walk) * walk,
                                        const R(first_balls) * first, float depth[GLINT_GROUP])
 {

@@ -1,13 +1,13 @@
-// torus: an image of the unit torus for cast, surface and occlude. It is not convex: a ray hits it up to four times,
-// and may hit again the torus that it leaves. ref/torus.h explains the method. Contract: stages.h.
+// torus: affine images of the unit torus, for cast, surface and occlude. A torus is not convex: a ray hits it up to
+// four times, and a ray that leaves it may hit it again. ref/torus.h explains the method. Contract: stages.h.
 #ifndef GLINT_CAST_TORUS_H
 #define GLINT_CAST_TORUS_H
 
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// Returns the factor of the quartic whose sign tells the sides of the torus apart: below 0 inside. *beyond: the
-/// other factor, above 0 everywhere.
+/// Returns the factor of the quartic that has a different sign inside of the torus (below 0) and outside. *beyond:
+/// the other factor, which is above 0 everywhere.
 INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
 {
     const vr one = r_set(1), round = r_sqrt(k[0] * k[0] + k[1] * k[1]), near = round - one, far = round + one;
@@ -16,23 +16,23 @@ INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
     return (near * near + level) - tube2;
 }
 
-/// Lines through a torus, parametrised from the point nearest to its centre. The quartic falls and rises in turn in
-/// the stretches 0 .. 3 between its turning points.
+/// Lines through a torus, parametrised from the point nearest to its centre. Up to three turning points of the
+/// quartic divide each line into the stretches 0 .. 3, in which the quartic falls and rises in turn.
 typedef struct R(torus_line) {
     vr tube, tube2;
     vr p[3], u[3];
-    vr from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
+    vr from, per, length, begin; ///< t = from + s per, with per = 1 / length; begin: s at t = 0
     vr reach; ///< there are no roots beyond -reach .. reach
     vr bend, lean;
-    rm near; ///< lines that come near the torus; other lines only have this and the fields above
-    vr turn[3], gap[3], beyond[3]; ///< in order; if there is only one turning point, the others are at infinity,
-        ///< outside
+    rm near; ///< lines that come near the torus; for other lines, only this field and the fields above are set
+    vr turn[3], gap[3], beyond[3]; ///< s of the turning points, in order, and the factors of torus_gap there; if
+        ///< there is only one turning point, the others are at infinity, outside
     vr begin_gap;
-    rm on, inward; ///< rays that start on the surface; those of them that go inside
+    rm on, inward; ///< rays that start on the surface; of these, the rays that go inside
     rm past[3]; ///< turning points behind the rays' origins
 } R(torus_line);
 
-/// Rays that leave the torus: which lanes do, and which of these go inwards.
+/// The lanes whose rays leave the torus, and of these the lanes whose rays go inwards.
 typedef struct R(torus_start) {
     rm leaves, inward;
 } R(torus_start);
@@ -102,16 +102,16 @@ static inline void R(begin_on_torus)(R(torus_line) * l, const glint_solid *solid
     l->past[0] = rm_or(rm_andnot(l->past[0], l->on), rm_or(outward, later_in));
     l->past[1] = rm_or(rm_andnot(l->past[1], l->on), rm_or(later_out, later_in));
     l->past[2] = rm_or(rm_andnot(l->past[2], l->on), later_out);
-    // on this side of the surface, however rounding has moved the next turning point
+    // these rays start on the correct side of the surface, even if rounding has moved the next turning point
     const rm next[3] = { rm_andnot(l->inward, later_in), rm_andnot(outward, later_out), later_in };
     l->gap[0] = r_select(rm_and(next[0], r_lt(zero, l->gap[0])), zero, l->gap[0]);
     l->gap[1] = r_select(rm_and(next[1], r_le(l->gap[1], zero)), one, l->gap[1]);
     l->gap[2] = r_select(rm_and(next[2], r_lt(zero, l->gap[2])), zero, l->gap[2]);
 }
 
-/// Returns the lines that may come near the tube. Other lines stay as high as the tube within the ring's hole, or
-/// never come within reach. The distance of a line from its axis grows towards both ends. Written so that lines with
-/// NaN stay.
+/// Returns the lines that may come near the tube. Other lines stay within the hole of the ring while they are as high
+/// as the tube, or never come close enough to the torus. The distance of a line from the axis grows towards both ends
+/// of the line. Written so that lines with NaN stay.
 INNER rm R(passes_tube)(const R(torus_line) * l, vr within)
 {
     const vr one = r_set(1), wide = l->tube * r_set(1.01) + (within + r_set(1024 * GLINT_ON_FACE)), hole = one - wide;
@@ -194,7 +194,7 @@ static inline rm R(begins_in)(const R(torus_line) * l, int stretch)
     return rm_andnot(stretch == 3 ? from : rm_andnot(from, l->past[stretch]), l->on);
 }
 
-/// For stretches with a root, returns the rays whose root is ahead.
+/// Returns the rays whose root in the stretch is ahead of the origin; the stretch must have a root.
 static inline rm R(torus_ahead)(const R(torus_line) * l, int stretch)
 {
     const vr zero = r_set(0);
@@ -204,7 +204,7 @@ static inline rm R(torus_ahead)(const R(torus_line) * l, int stretch)
                  rm_and(R(begins_in)(l, stretch), side));
 }
 
-/// A stretch of each line.
+/// One stretch for each line.
 typedef struct R(torus_stretch) {
     vr low, high, middle; ///< its ends; the lowest turning point, which is one of the ends
     vr gap; ///< Q there
@@ -224,7 +224,7 @@ static inline R(torus_stretch) R(stretch_at)(const R(torus_line) * l, int stretc
     return out;
 }
 
-/// Makes one step towards the roots at s; wanted: lanes that have not converged.
+/// Moves s one step towards the roots; wanted: lanes that have not converged.
 INNER void R(step_to_root)(const R(torus_line) * l, R(torus_stretch) * at, vr *s, unsigned *wanted)
 {
     const vr zero = r_set(0), half = r_set(0.5), x = *s;
@@ -294,12 +294,12 @@ static rm R(intersect_torus)(const glint_solid *solid, const vr f[3], const vr e
     return rm_or(hit, rm_and(start.leaves, start.inward));
 }
 
-/// Computes the intervals inside: ends[0] to ends[1], and ends[2] to ends[3]. If a ray does not come out in between,
-/// there is one interval, from the first root to the last. -inf: there is no such interval, or the ray starts inside
-/// of it.
+/// Computes the intervals inside the torus, from ends[0] to ends[1] and from ends[2] to ends[3]. A ray that does not
+/// come out in between has one interval, from the first root to the last. -inf: there is no such interval, or the ray
+/// starts inside the interval.
 static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
 {
-    R(torus_line) l = { .near = rm_from_bits(0) }; // the other fields stay if no line comes near the tube
+    R(torus_line) l = { .near = rm_from_bits(0) }; // the other fields are not set if no line comes near the tube
     R(along_torus)(solid, f, e, start, &l);
     const vr zero = r_set(0), none = r_set(-HUGE_VAL);
     for (int stretch = 0; stretch < 4; stretch++) {
@@ -333,8 +333,8 @@ static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
     g[2] = up;
 }
 
-/// Returns the segments from f that cross the surface before they end at t = end, inside or outside. l: the line by
-/// along_torus.
+/// Returns the segments from f that cross the surface before they end at t = end. l: the lines as along_torus made
+/// them.
 static rm R(torus_parts)(const R(torus_line) * l, const vr f[3], const vr e[3], vr end, rm end_inside,
                          R(torus_start) start)
 {

@@ -1,5 +1,5 @@
-// triangle: triangles for cast, surface and occlude. The side of an edge that a ray passes on is decided from the
-// corners as seen along the ray. It is the same for all triangles that share these corners. Contract: stages.h.
+// triangle: triangles for cast, surface and occlude. The corners as seen along the ray decide on which side a ray
+// passes an edge. The decision is the same for all triangles that share the edge's corners. Contract: stages.h.
 #ifndef GLINT_CAST_TRIANGLE_H
 #define GLINT_CAST_TRIANGLE_H
 
@@ -11,7 +11,7 @@ typedef struct R(ray_edges) {
     vr e[3]; ///< unnormalised weights of the corners
     vr dz; ///< the direction's largest component
     vr depth; ///< weighted sum of the corners along that axis
-    vr reach; ///< sum of the absolute values of the terms of e; only written if wanted
+    vr reach; ///< sum of the absolute values of the terms of e; only set if wanted
 } R(ray_edges);
 
 static inline vr R(abs)(vr x) { return r_max(x, -x); }
@@ -48,8 +48,8 @@ static inline R(ray_edges) R(select_edges)(rm mask, const R(ray_edges) * a, cons
     return out;
 }
 
-/// Computes the edge functions. p: the corners relative to the rays' origins. All rays of a group nearly always have
-/// the same axis.
+/// Computes the edge functions. p: the corners relative to the rays' origins. The rays of a group nearly always have
+/// their largest component along the same axis.
 INNER R(ray_edges) R(make_ray_edges)(vr p[3][3], const vr d[3], bool want_reach)
 {
     const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
@@ -76,20 +76,20 @@ INNER R(ray_edges) R(make_ray_edges)(vr p[3][3], const vr d[3], bool want_reach)
 
 static inline vr R(det)(const R(ray_edges) * edges) { return (edges->e[0] + edges->e[1]) + edges->e[2]; }
 
-/// Returns whether the ray passes all edges on one side, or on them, within `reach`.
+/// Returns the lanes whose ray passes all edges on the same side, or on the edge itself, within `reach`.
 static inline rm R(within)(const R(ray_edges) * edges, vr reach)
 {
     const vr *e = edges->e;
     return rm_or(r_le(-reach, r_min(r_min(e[0], e[1]), e[2])), r_le(r_max(r_max(e[0], e[1]), e[2]), reach));
 }
 
-/// Returns whether the ray passes between the corners along both axes of its space, within `reach`; X and Y as in
-/// edges_along.
+/// Returns the lanes whose ray passes between the smallest and the largest corner coordinate along X and along Y of
+/// edges_along, within `reach`.
 static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
 {
     const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
     const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
-    vr permuted[4][3]; // direction and corners, the direction's largest component last
+    vr permuted[4][3]; // direction and corners, with the direction's largest component last
     for (int j = 0; j < 4; j++) {
         const vr *v = j == 3 ? d : p[j];
         for (int k = 0; k < 3; k++)
@@ -107,7 +107,8 @@ static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
 }
 
 /// Returns whether the ray passes through the triangle or its edges. An edge function of 0 may have lost its sign by
-/// rounding. A triangle seen edge-on has such edge functions all along its plane, and only the corners bound it.
+/// rounding. All edge functions are 0 along the plane of a triangle seen edge-on, where only the corners bound the
+/// triangle.
 static inline rm R(passes)(const R(ray_edges) * edges, vr p[3][3], const vr d[3])
 {
     const vr *e = edges->e, zero = r_set(0);
@@ -125,7 +126,7 @@ static inline const glint_face *R(face_of)(const glint_geometry_table *table, co
 }
 
 /// Intersects a triangle in the space of the ray; p: the corners relative to the ray's origin, in units of the table.
-/// face: of its shared plane, or NULL.
+/// face: the face of the triangle's shared plane, or NULL.
 static inline rm R(intersect_edges)(const R(ray_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
                                     const glint_face *face, vr *t)
 {
@@ -224,11 +225,11 @@ static inline void R(smooth_normal)(vr corner[3][3], const vr w[3], const vr fla
 /// A triangle's plane.
 typedef struct R(triangle_plane) {
     vr m[3]; ///< normal, not unit
-    vr light; ///< the side that the light is on
+    vr light; ///< signed value whose sign is the side of the plane that the light is on
     vr size[3]; ///< sum of the absolute values of the terms of m
 } R(triangle_plane);
 
-/// Computes a triangle's plane. light: position, or direction towards it.
+/// Computes a triangle's plane. light: the light's position, or the direction towards it.
 static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const vr light[3], bool directional)
 {
     R(triangle_plane) plane;
@@ -250,8 +251,8 @@ static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const
     return plane;
 }
 
-/// Returns whether the triangle separates the light from points in its plane: the points touch it, and the light is
-/// on the side away from the viewer, from whom `ray` came.
+/// Returns the lanes whose points, which lie in the triangle's plane, the triangle separates from the light: the
+/// point touches the triangle, and the light is on the side away from the viewer, where `ray` came from.
 static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(ray_edges) * edges,
                                      const R(triangle_plane) * plane, vr slack, double scale, const vr ray[3])
 {
@@ -270,7 +271,7 @@ static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(ray_edge
     if (!rm_bits(parts))
         return parts;
     parts = rm_and(parts, R(between_corners)(p, d, move)); // if the light is in this plane, all edges are within reach
-    for (int k = 0; k < 3; k++) { // the triangle may also be behind the point
+    for (int k = 0; k < 3; k++) { // it is possible that the triangle is behind the point
         const vr low = r_min(r_min(p[0][k], p[1][k]), p[2][k]), high = r_max(r_max(p[0][k], p[1][k]), p[2][k]);
         parts = rm_and(parts, rm_and(r_le(low, loose), r_le(-loose, high)));
     }

@@ -14,23 +14,24 @@ typedef struct glint_shading_point_light {
 
 typedef struct glint_vertex_args {
     uint32_t group_count;
-    const uint16_t *wanted; ///< one bit per lane: its triangle has shading points
+    const uint16_t *wanted; ///< one bit per lane: the lane's triangle has shading points
     const uint16_t *back; ///< written by surface
     const uint32_t *prim;
     const glint_prim *prims;
-    double scale; ///< of the table
+    double scale; ///< the table's scale
     const glint_shading_points *shading_points;
-    const glint_shading_point_light *light[2]; ///< of each shading point: seen from the front, from behind
+    const glint_shading_point_light *light[2]; ///< the light of each shading point, seen from the front, and from
+        ///< behind
     const glint_camera_args *camera; ///< the rays, as in glint_surface_args
     const void *origin[3], *direction[3];
-    double *sum[2][3]; ///< in and out: added to where wanted; NULL: the frame does not have this term
+    double *sum[2][3]; ///< in and out: the light is added in wanted lanes; NULL: the frame does not have this term
 } glint_vertex_args;
 // The arithmetic: ref/triangle.h, in double, with the weights of surface.
 
-// caps: the visible share is 1 times the share that each primitive leaves, in the table's order. If two balls do not
-// touch, the one with the shorter tangent is in front of the other. The arithmetic: ref/caps.h, after C. Oat and P.
-// Sander, "Ambient aperture lighting", I3D 2007. It uses half angles throughout, so that caps of 1e-8 keep their
-// digits. Areas are computed by Gauss-Bonnet, as sectors minus triangles.
+// caps: the visible share is the product of the shares that the primitives leave visible, starting with 1, in the
+// table's order. If two balls do not touch, the one with the shorter tangent is in front of the other. The
+// arithmetic: ref/caps.h, after C. Oat and P. Sander, "Ambient aperture lighting", I3D 2007. It uses half angles
+// throughout, so that caps of 1e-8 keep their digits. Areas are computed by Gauss-Bonnet, as sectors minus triangles.
 
 // ---- bounce: reflected and refracted rays ----
 
@@ -54,15 +55,16 @@ typedef struct glint_scatter_args {
     uint32_t group_count;
     const uint16_t *wanted; ///< one bit per lane
     const void *normal[3]; ///< real, unit
-    const uint32_t *number, *order, *digits[2]; ///< one per ray: the number of a point of a sequence, and the seed of
-        ///< that sequence
+    const uint32_t *number, *order, *digits[2]; ///< for each ray: the number of a point of a sequence, and the seeds
+        ///< of that sequence
     uint32_t further; ///< offset that is added to the `number` of every ray
     void *direction[3]; ///< out, real, of length 1 up to rounding and 2e-9
 } glint_scatter_args;
 // Groups without a wanted lane are not written. In other groups, lanes that are not wanted are undefined. The point
 // (u, v) of the unit square is computed by glint_sequence_flipped, in double. Equal areas of the square get equal
-// shares of the light of a uniform sky. The arithmetic: ref/scatter.h: the disk lifted onto the hemisphere, which is
-// cosine-weighted, in the orthonormal basis of T. Duff et al., JCGT 6(1), 2017.
+// shares of the light of a uniform sky. The arithmetic: ref/scatter.h: the square is mapped to a disk, and the disk
+// is projected up onto the hemisphere, which gives a cosine distribution, in the orthonormal basis of T. Duff et al.,
+// JCGT 6(1), 2017.
 
 // ---- sky: the background seen by rays that miss ----
 
@@ -89,26 +91,28 @@ typedef enum glint_term {
 #define GLINT_TERM_LOCAL GLINT_TERM_INDIRECT ///< number of terms that shade computes
 
 typedef struct glint_shade_light {
-    bool joined; ///< another sample of the same light as the element before it in this call, with the same colours
-    const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `undecided` if it casts shadows
+    bool joined; ///< this element is another sample of the light of the element before it in this call, with the same
+        ///< colours
+    const uint16_t *lit; ///< bit mask of the lanes that the light reaches: `lit` of the light stage, or `unoccluded`
+        ///< if the light casts shadows
     const float *cosine, *attenuation, *log2_specular; ///< attenuation NULL: 1 everywhere
     const float *sine2, *schlick; ///< only read for materials of GLINT_HIGHLIGHT_FACETS
     bool
         summed; ///< the sums over all samples of a light, as soft_light computes them: `cosine` is the diffuse sum,
-    ///< `highlight` the specular sum, and no other factors are read. No light is joined to it, and no material has
-    ///< microfacets
+    ///< `highlight` the specular sum, and no other factors are read. No light is joined to a summed one, and no
+    ///< material has microfacets
     const float *highlight;
-    double diffuse[3], specular[3]; ///< colour times intensity
+    double diffuse[3], specular[3]; ///< the light's colour times its intensity
 } glint_shade_light;
 
-/// Material fields that differ between samples. They are read in lanes whose material says so, and are finite and >=
-/// 0 there. NULL: no material has that field in a plane.
+/// Material fields that differ between samples. They are read in the lanes whose material has the matching bit in
+/// `planes`, and are finite and >= 0 there. NULL: no material has that field in a plane.
 typedef struct glint_shade_planes {
     const float *diffuse[3], *ambient[3], *specular[3];
     const float *shininess, *alpha;
-    double ambient_light[3]; ///< factor of planes of ambient reflectances
-    const float *shaded[2][3]; ///< diffuse and specular terms for materials of GLINT_PLANE_SHADED: read in lanes that a
-    ///< light reaches, 0 elsewhere; NULL: 0. Not read with sums
+    double ambient_light[3]; ///< factor of the planes of ambient reflectances
+    const float *shaded[2][3]; ///< diffuse and specular terms for materials of GLINT_PLANE_SHADED: read in lanes that
+    ///< a light reaches; in the other lanes the terms are 0; NULL: 0. Not read if there are sums
 } glint_shade_planes;
 
 typedef struct glint_shade_args {
@@ -121,13 +125,13 @@ typedef struct glint_shade_args {
     double background[3];
     const float *facing; ///< only read for materials of GLINT_HIGHLIGHT_FACETS
     bool highlights; ///< false: the specular term is not computed
-    bool first; ///< also the terms that need no light: background and ambient
+    bool first; ///< true: this call also computes the terms that need no light: background and ambient
     const glint_shade_light *lights;
     uint32_t light_count; ///< at most GLINT_LIGHT_CHUNK
     double *sum
         [GLINT_TERM_COUNT]
-        [3]; ///< in and out: added to (specular: only with `highlights`); NULL: the frame has one sample, and this call
-            ///< has all lights
+        [3]; ///< in and out: the terms are added (specular only if `highlights` is set); NULL: the frame has one
+            ///< sample, and this call has all lights
     float *film[GLINT_TERM_COUNT][3]; ///< out, if sum is NULL: the terms; NULL: not needed
     float *beauty[3]; ///< out, if sum is NULL
 } glint_shade_args;
@@ -143,8 +147,8 @@ typedef struct glint_shade_args {
 typedef struct glint_resolve_args {
     uint32_t group_count;
     double samples;
-    double *sum[GLINT_TERM_COUNT][3]; ///< of the terms that shade does not compute; NULL: the frame does not have this
-        ///< term
+    double *sum[GLINT_TERM_COUNT][3]; ///< sums of the terms that shade does not compute; NULL: the frame does not
+        ///< have this term
     float *film[GLINT_TERM_COUNT][3]; ///< out, or NULL
     float *beauty[3]; ///< out
 } glint_resolve_args;
@@ -158,15 +162,15 @@ typedef struct glint_resolve_args {
 
 // ---- estimate, range, differ: which neighbouring pixels differ, for adaptive sampling ----
 
-#define GLINT_DIFFER_PAIRS 32 ///< maximum per call
-#define GLINT_DIFFER_LENGTH 40 ///< length of each array of a line: it may be read up to here, however few pairs there
-    ///< are
+#define GLINT_DIFFER_PAIRS 32 ///< maximum number of pairs per call
+#define GLINT_DIFFER_LENGTH 40 ///< length of each array of a line: the kernels may read all of it, however few pairs
+    ///< there are
 enum { GLINT_DIFFER_ID, GLINT_DIFFER_NORMAL, GLINT_DIFFER_CODE = 4, GLINT_DIFFER_VALUES = 8 };
 enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFFER_RISING, GLINT_DIFFER_DIRECTIONS };
 
-/// estimate: approximate 16-bit sRGB values before rounding, as a sum of three roots. Its derivative is sRGB's within
-/// a relative error of GLINT_ESTIMATE_SHARE. The difference of two estimates therefore is the difference of the exact
-/// values within this relative error, plus GLINT_ESTIMATE_SLACK for the rounding of three values and of float.
+/// estimate: approximate 16-bit sRGB values before rounding, as a sum of three roots. Its derivative has a relative
+/// error of at most GLINT_ESTIMATE_SHARE. The difference of two estimates therefore has this relative error, plus an
+/// error of at most GLINT_ESTIMATE_SLACK from the rounding of three values and of float.
 #define GLINT_ESTIMATE_SHARE 0.004f
 #define GLINT_ESTIMATE_SLACK 4.0f ///< 16-bit values
 
@@ -191,36 +195,38 @@ typedef struct glint_range_args {
 typedef struct glint_differ_args {
     const float *const *p, *const *q; ///< GLINT_DIFFER_VALUES each: object number, normal, estimates. q NULL: there is
         ///< no second line
-    uint32_t count; ///< pairs (p[i], q[i])
-    uint32_t ahead; ///< diagonal pairs, and pairs along a line. Both counts are at most GLINT_DIFFER_PAIRS
+    uint32_t count; ///< number of pairs (p[i], q[i])
+    uint32_t ahead; ///< number of diagonal pairs, and of pairs along a line. Both counts are at most
+        ///< GLINT_DIFFER_PAIRS
     bool along; ///< the pixels of p are compared with each other, too
     bool alpha; ///< the estimates have four channels, otherwise three
-    float low, high; ///< sums of differences of estimates: below `low` they certainly do not count as a difference,
-        ///< above `high` they certainly do
-    float cosine; ///< of normals: they differ below it
+    float low, high; ///< limits for the sum of the differences of two pixels' estimates: below `low` the pixels
+        ///< certainly have the same colour, above `high` they certainly differ
+    float cosine; ///< two normals differ if the cosine of their angle is below this
 } glint_differ_args;
 
-/// One bit per pair. `sure`: the pair differs. `undecided`: the pair differs if its estimates do, which low and high
-/// leave undecided; undefined for pairs that are sure.
+/// One bit per pair. `sure`: the pair differs. `undecided`: the sum of differences is between `low` and `high`, so
+/// that the caller must compare the exact values; undefined for pairs that are sure.
 typedef struct glint_differences {
     uint32_t sure[GLINT_DIFFER_DIRECTIONS], undecided[GLINT_DIFFER_DIRECTIONS];
 } glint_differences;
-// Bit i stands for (p[i], p[i + 1]) along, (p[i], q[i]) across, (p[i], q[i + 1]) falling and (p[i + 1], q[i]) rising.
-// Pixels differ by object, by normal if the objects are the same and not 0, and by estimate. The arithmetic:
-// ref/differ.h.
+// Bit i stands for the pair (p[i], p[i + 1]) in `along`, (p[i], q[i]) in `across`, (p[i], q[i + 1]) in `falling` and
+// (p[i + 1], q[i]) in `rising`. Pixels differ by object, by normal if both objects are the same and not 0, and by
+// their estimates. The arithmetic: ref/differ.h.
 
 // ---- tone: 8-bit pixel values, written into the image ----
 
-/// Any increasing map of 0 .. top to 0 .. 255 whose steps are further apart than the buckets. A bucket holds the
-/// floats with equal upper 16 bits. Its entry is value | threshold << 8: the 8-bit value of its first float, and the
-/// lower 16 bits from which on the value is one more (65536: never). The last entry is for top.
+/// A table for any increasing map of 0 .. top to 0 .. 255. A bucket holds the floats with equal upper 16 bits, and
+/// the map steps at most once within a bucket. Its entry is value | threshold << 8: the 8-bit value of the bucket's
+/// first float, and the lower 16 bits of the first float whose value is one more (65536: none). The last entry is for
+/// top.
 #define GLINT_TONE_FIRST 0x3800u ///< upper bits of 2^-15; the value of smaller floats is 0
 
 /// Avoids most look-ups: an estimate of the pixel value with a fraction, and its error bound.
 typedef struct glint_tone_fit {
     float knee, slope, base; ///< x < knee: v = slope x + base
-    float scale[16], power[6], offset; ///< others: v = scale[e & 15] P(m) + offset; x = m 2^(e - 127), m in [1, 2),
-        ///< P(m) = power[0] + power[1] m + ... + power[5] m^5
+    float scale[16], power[6], offset; ///< x >= knee: v = scale[e & 15] P(m) + offset; x = m 2^(e - 127), m in [1,
+        ///< 2), P(m) = power[0] + power[1] m + ... + power[5] m^5
     uint32_t doubt; ///< v is in [256, 512), so that its lower 15 bits are the fraction. If the fraction is >= doubt,
         ///< the 8 bits above it equal the table's value, however the estimate is rounded, with or without FMA
 } glint_tone_fit;
@@ -230,13 +236,14 @@ typedef struct glint_tone_args {
     const uint16_t *active; ///< one bit per lane: pixels inside the image whose values are wanted
     const float *beauty[3];
     float gain; ///< > 0: factor of the light
-    float white, top; ///< light above `white` is clipped; above `top` (at most `white`) all values are that of `top`
+    float white, top; ///< light above `white` is clipped; light above `top` (at most `white`) gets the value of `top`
     const uint32_t *table;
-    const glint_tone_fit *fit; ///< NULL: use only the table. The pixel values are the same with either
+    const glint_tone_fit *fit; ///< NULL: only the table is used. The pixel values are the same with and without the
+        ///< fit
     uint8_t *codes; ///< out: red, green, blue of the first lane of group 0
     size_t stride; ///< bytes from one row of pixels to the next. Only bytes of active lanes are written
-    uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > white; active lanes with a channel of
-        ///< beauty that is not finite
+    uint64_t *clipped, *nonfinite; ///< in and out: the number of active lanes with a channel > white, and with a
+        ///< channel of beauty that is not finite, is added
 } glint_tone_args;
 // The arithmetic: ref/ref.c. A lane is clipped if gain times beauty, in float, is above `white`; NaN counts as 0.
 

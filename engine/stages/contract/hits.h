@@ -7,9 +7,9 @@
 
 // ---- camera: rays of one sample of each pixel ----
 
-/// The points where the rays of one sample cross the lens, by the lane of the pixel; world units.
+/// The points where the rays of one sample cross the lens, one per lane, in world units.
 typedef struct glint_lens {
-    double shift[3][GLINT_GROUP]; ///< from the centre of the lens, in the plane of the lens
+    double shift[3][GLINT_GROUP]; ///< offset from the centre of the lens to the point, in the plane of the lens
     double bend[3][GLINT_GROUP]; ///< shift / focus: subtracted from the direction
     double radius; ///< maximum length of a shift
     double per_focus; ///< 1 / focus
@@ -19,31 +19,34 @@ typedef struct glint_camera_args {
     uint32_t group_count, groups_across; ///< group g is column g % groups_across, row g / groups_across
     double x0, y0; ///< the tile's first pixel
     double offset[2]; ///< position of the sample in its pixel, 0 .. 1
-    double width, height; ///< of an image that is symmetric around the point where `forward` is seen
-    double beyond[2]; ///< by how much the actual image is wider and higher than that
+    double width, height; ///< size in pixels of an image that is symmetric around the point where `forward` is seen
+    double beyond[2]; ///< by how many pixels the actual image is wider and higher than the symmetric one
     bool orthographic;
-    double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
+    double eye[3], forward[3], right[3], up[3]; ///< the eye, and three directions; `right` and `up` are half a pixel
+        ///< long
     const glint_lens *lens; ///< NULL: all rays of a perspective camera start at the eye
-    const double *pixel[2]; ///< column and row of each lane's pixel, or, if `offset` is 0, of a point in it; NULL: the
-        ///< pixel at the lane's position in the tile. Only for a perspective camera without a lens. Then groups_across
-        ///< is 1, no pixel is before (x0, y0)
-    double end[2]; ///< and all pixels are before (end[0], end[1])
-    void *across, *down; ///< out, real, perspective: 3 times 16 numbers per column and per row of groups; see below
+    const double *pixel[2]; ///< column and row of each lane's pixel or, if `offset` is 0, of a point in that pixel;
+        ///< NULL: each lane has the pixel at its position in the tile. Only for a perspective camera without a lens.
+        ///< If set, groups_across is 1, and no pixel is before (x0, y0)
+    double end[2]; ///< with `pixel`: all pixels are before (end[0], end[1])
+    void *across, *down; ///< out, real, perspective: 3 times 16 numbers per column of groups, and per row of groups;
+        ///< see below
     void *origin[3], *direction[3]; ///< out, real, orthographic or with a lens: one per ray
 } glint_camera_args;
 // lane i of group (gx, gy):
 //   px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
-//   sx = 2 px - width, sy = height - 2 py, all of that in double, then rounded to real
-// with given pixels: px = pixel[0][16 g + i] + offset[0], py likewise; across holds -0, and down the whole direction
-// perspective: direction = (forward + sx right) + sy up. The first term is stored in across, the second in down:
+//   sx = 2 px - width, sy = height - 2 py, all computed in double, then rounded to real
+// if `pixel` is set: px = pixel[0][16 g + i] + offset[0], py likewise; `across` holds -0, and `down` holds the whole
+// direction perspective: direction = (forward + sx right) + sy up. The first term is stored in across, the second in
+// down:
 //   component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
-// orthographic: direction = forward, origin = (eye + sx right) + sy up
-// with a lens, by lane: bend is subtracted from the direction, and shift is added to the origin (perspective: to the
-// eye)
+// orthographic: direction = forward, origin = (eye + sx right) + sy up with a lens, in each lane: bend is subtracted
+// from the direction, and shift is added to the origin (perspective: to the eye)
 
 // ---- cast: the nearest hit of each ray ----
 
-/// The part of a table that a camera sees anywhere in its picture. The first call computes it, later calls use it.
+/// The primitives of a table that are visible anywhere in the picture of a camera. The first call computes it, later
+/// calls use it.
 typedef struct glint_cast_view {
     _Alignas(64) unsigned char scratch[8128]; ///< private to the kernels
     bool made; ///< false before the first call
@@ -54,60 +57,63 @@ typedef struct glint_cast_args {
     const uint16_t *active; ///< one bit per lane: pixels inside the image; other lanes are misses
     const glint_geometry_table *geometry;
     const atomic_bool *stop; ///< true: the results are no longer needed; NULL: never stops
-    const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: the orthographic or lens camera of the tile
-        ///< that the rays belong to, or NULL
+    const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: the camera of the tile that the rays
+        ///< belong to if it is orthographic or has a lens, otherwise NULL
     glint_cast_view *view; ///< in_sight and cast_bundle only: shared by calls of one thread with the same geometry and
         ///< the same camera (except for tile and offset); NULL: nothing is shared
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one per ray
     const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: no ray
         ///< starts on one
     const uint16_t *inward; ///< with `leaving`, one bit per lane: the ray goes into the primitive that it starts on
-    void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
+    void *t; ///< out, real: distance in lengths of `direction`: the hit is at origin + t direction; +inf where
+        ///< nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
-    uint16_t *hits; ///< out: one bit per lane
+    uint16_t *hits; ///< out, one bit per lane: the ray hits something
     uint64_t
-        *tests; ///< added to: pairs of a ray and a primitive that are decided by the formulas below. The number depends
-        ///< on index and filter. May be NULL
+        *tests; ///< in and out: the number of pairs of a ray and a primitive that the formulas below decided is
+        ///< added. It depends on index and filter. May be NULL
 } glint_cast_args;
 #define GLINT_LEAST_T 0x1p-126 ///< t of a hit at the origin of the ray
-#define GLINT_TURN_NEAR 0x1p-20 ///< of a torus's quartic: a step this small towards a turning point leaves an error
+#define GLINT_TURN_NEAR 0x1p-20 ///< quartic of a torus: after a step this small towards a turning point, the error is
     ///< below rounding, because convergence is cubic
-#define GLINT_TURN_STEPS 24 ///< maximum steps to a turning point; more than 10 are only needed where three coincide
-#define GLINT_ROOT_STEPS 64 ///< maximum steps to a root; bisection needs 52
+#define GLINT_TURN_STEPS 24 ///< maximum number of steps to a turning point; more than 10 are only needed where three
+    ///< turning points coincide
+#define GLINT_ROOT_STEPS 64 ///< maximum number of steps to a root; bisection needs 52
 #define GLINT_NEAR_SHARED_EDGE \
-    0x1p-10 ///< relative to the scene: rays that lie in a triangle's plane for longer than this count as lying in it
+    0x1p-10 ///< relative to the scene: a ray that stays in a triangle's plane for longer than this counts as lying in
+        ///< the plane
 // in_sight reads only active, geometry, camera and view. false: no ray of the camera's tile can hit anything. Then
-// cast_bundle reads no directions.
-// The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it if 0 < t < inf and (t < best, or t == best and
-// its id is lower). Index and filter may reject what the decision below would miss, and nothing else.
-// The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. The methods, and their reasons:
-//   sphere: by the distance of the line from the centre if the ray begins far away, by b^2 - a c if it begins close.
-//     c is exact, by error-free sums and products, so that points on the surface are distinguished from points next
-//     to it
+// cast_bundle reads no directions. The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it if 0 < t <
+// inf and (t < best, or t == best and its id is lower). Index and filter may only reject primitives that the formulas
+// below would miss. The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. The methods, and their reasons:
+//   sphere: from the distance between the line and the centre if the ray begins far away, from b^2 - a c if it begins
+//     close. c is exact, by error-free sums and products, so that points on the surface are distinguished from points
+//     next to it
 //   triangle: edge functions in the plane perpendicular to the ray's longest axis. Neighbours see their common
-//     corners at the same X, Y. Rounding is monotonic, so no edge function has the wrong sign for them, and no ray
-//     passes through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1) 2013; here without the division, in the
-//     scaled plane). An edge function of 0 may have lost its sign, and for a triangle seen edge-on all are 0: then
-//     error bounds decide
-//   solid: the unit shape in its own frame. For a cone, the ray's origin is moved to the point nearest to the apex if
-//     that saves digits
-//   torus: a quartic. The signs at its turning points tell how many roots there are, and which is the first ahead
-//   faces: faces described in one plane share one face's numbers, except for the sign of the normal. Faces along two
-//     axes of one map (a transform and the groups around it) always do, others if place and normal are bit-equal.
-//     They are hit at bit-equal t, so that among boxes, caps, disks, planes and meshes the first one defined wins in
-//     every ray. A ray that starts on a face is at height 0 and hits it at t = 0, which does not count: exactly if
-//     the face is along two axes of the world, otherwise within rounding. The same holds for curved sides (except of
-//     spheres), and for the plane of a triangle.
-// A ray never hits the primitive that it leaves, with one exception: spheres and solids other than disks, if the lane
-// is inward (and starts on or inside of them). They are always hit, at GLINT_LEAST_T or beyond. A ray that leaves a
-// torus outwards can hit it again, too.
-// A ray that leaves triangle A hits another triangle B like any other ray, with two exceptions: the ray lies in both
-// planes within rounding, or it does not cross B and the offset of its origin may have moved it over a common edge.
-// In these cases it hits B if a corner of B is above A on the ray's side, a corner of A is above B on the other side,
-// and the ray is at B within rounding. So of two faces that share an edge, the ray hits the other face exactly if it
-// goes between them.
+//     corners at the same X, Y. Rounding is monotonic, so no edge function of these neighbours has the wrong sign,
+//     and no ray slips through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1) 2013; here without the
+//     division, in the scaled plane). An edge function of 0 may have lost its sign to rounding, and all of them are 0
+//     for a triangle seen edge-on: in these cases error bounds decide
+//   solid: the ray is intersected with the unit shape in the shape's own frame. For a cone, the ray's origin is moved
+//     to the point nearest to the apex if that saves digits
+//   torus: a quartic. The signs of the quartic at its turning points tell how many roots there are, and which root is
+//     the first one ahead
+//   faces: faces that the scene describes in the same plane share one glint_face, except for the sign of the normal.
+//     Faces along two axes of one map (a transform and the groups around it) always share it, other faces if point
+//     and normal are bit-equal. Rays hit such faces at bit-equal t, so that every ray hits the one that was defined
+//     first, among boxes, caps, disks, planes and meshes. A ray that starts on a face is at height 0 and would hit
+//     the face at t = 0, which does not count. The height is exactly 0 if the face is along two axes of the world,
+//     otherwise it is 0 within rounding. The same holds for the curved sides of solids other than spheres, and for
+//     the plane of a triangle.
+// A ray never hits the primitive that it leaves, with one exception: a ray in an `inward` lane, which starts on or
+// inside of a sphere or a solid other than a disk, always hits it again, at GLINT_LEAST_T or beyond. A ray that
+// leaves a torus outwards can hit it again, too. A ray that leaves triangle A hits another triangle B like any other
+// ray, with two exceptions: the ray lies in both planes within rounding, or it does not cross B and the offset of its
+// origin may have moved it over a common edge. In these two cases the ray hits B if a corner of B is above A on the
+// ray's side, a corner of A is above B on the other side, and the ray is at B within rounding. So of two faces that
+// share an edge, the ray hits the other face exactly if it goes between them.
 
-// ---- scan: the nearest triangle of each ray, from a list of those that a tile may show ----
+// ---- scan: the nearest triangle of each ray, from a list of the triangles that a tile may show ----
 
 typedef struct glint_raster_entry {
     uint32_t prim; ///< a triangle
@@ -116,19 +122,19 @@ typedef struct glint_raster_entry {
 } glint_raster_entry;
 
 typedef struct glint_raster_args {
-    glint_cast_args cast; ///< as for cast_bundle, or with an orthographic camera as for cast_rays; `camera` is set in
-        ///< both
-    const glint_raster_entry *entries; ///< in any order; fastest if nearer ones come first
+    glint_cast_args cast; ///< as for cast_bundle or, with an orthographic camera, as for cast_rays; `camera` is set
+        ///< in both cases
+    const glint_raster_entry *entries; ///< in any order; the scan is fastest if nearer triangles come first
     uint32_t entry_count;
 } glint_raster_args;
 // Like cast, with the triangles of the entries instead of all primitives.
 
 // ---- surface: point, normal and material of each hit ----
 
-/// The bounding box of points in world space, and the primitive that they are on.
+/// The bounding box of some points in world space, and the primitive that the points are on.
 typedef struct glint_point_box {
     double lower[3], upper[3]; ///< lower > upper: empty
-    uint32_t only; ///< the primitive that all points are on, none seen from behind; GLINT_MISS: unknown
+    uint32_t only; ///< the primitive that all points are on, if none of them is seen from behind; GLINT_MISS: unknown
 } glint_point_box;
 
 typedef struct glint_surface_args {
@@ -146,34 +152,34 @@ typedef struct glint_surface_args {
     const void *t;
     void *point[3], *normal[3]; ///< out, real; the normal is unit and turned towards the viewer; normal[0] NULL: points
         ///< only
-    bool all_normals; ///< for lit_surface, which otherwise may leave some out unless `mixed` is set
+    bool all_normals; ///< only for lit_surface: all normals are written; false: some may be left out unless `mixed`
+        ///< is set
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside); their normals were flipped towards the viewer
     uint16_t *dark; ///< out: lanes of `back` on one-sided surfaces, which get ambient light only
-    void *slack; ///< out, real: bound of the distance that rounding moves the point off its triangle, per component;
-        ///< may be NULL, for example without triangles
-    glint_point_box *box; ///< out: of all hits' points; may be NULL
+    void *slack; ///< out, real: bound, per component, of the distance by which rounding moves the point off its
+        ///< triangle; may be NULL, for example if there are no triangles
+    glint_point_box *box; ///< out: the bounding box of the points of all hits; may be NULL
 } glint_surface_args;
 // Groups without a hit only get back = dark = 0. In other groups, lanes without a hit get point = normal = 0 and
 // material = 0. If `slack` is not NULL, it is -(point_slack |point|_max) in lanes that hit something other than a
 // triangle: the bound of the point's rounding error, marked by the sign. Points of faces and planes perpendicular to
-// an axis of the world have that coordinate exactly.
-// If only points are computed (not for a mixed table), `box` and `slack` are NULL, and material, back and dark are
-// not written.
-// The arithmetic: ref/real.h, ref/triangle.h, ref/solid.h. The normal of a close sphere is not normalised: its length
-// is 1 within F^2 + 8 roundings, F = |origin - center| / radius, because the error of t at a point seen at an angle i
-// is along the ray, and grows as 1 / cos i. From further away the normal is normalised. From very far away it is
-// computed from the line's distance from the centre. The slack of a triangle holds for corner weights within [0, 1 +
-// 2^-50]: one rounding each for its edges, the products, their sum and the point. The geometric normal decides
+// an axis of the world have that coordinate exactly. If only points are computed (not for a mixed table), `box` and
+// `slack` are NULL, and material, back and dark are not written. The arithmetic: ref/real.h, ref/triangle.h,
+// ref/solid.h. The normal of a close sphere is not normalised: its length is 1 within F^2 + 8 roundings, F = |origin
+// - center| / radius, because the error of t moves the point along the ray, and grows as 1 / cos i for a point seen
+// at an angle i. The normal of a sphere further away is normalised. The normal of a very distant sphere is computed
+// from the line's distance from the centre. The slack of a triangle holds for corner weights within [0, 1 + 2^-50]:
+// it covers one rounding each for the edges, the products, their sum and the point. The geometric normal decides
 // `back`, also for smooth triangles. The point of a solid is projected onto its surface.
 
 #define GLINT_SPHERE_NEAR 0x1p40
 #define GLINT_SPHERE_CLOSE_DOUBLE 0x1p8
 #define GLINT_SPHERE_CLOSE_FLOAT 2.0f
 
-/// Sixteen roundings: four move a point off its triangle, eight are in the height of a point over a plane (three in
-/// m, one in q, four in products and sums). The rest covers products of roundings and the rounding of the bounds
-/// themselves.
+/// Sixteen roundings: four move a point off its triangle, and eight change the height of a point over a plane (three
+/// of them in m, one in q, four in products and sums). The rest covers products of roundings and the rounding of the
+/// bounds themselves.
 #define GLINT_POINT_SLACK_DOUBLE 0x1p-49
 #define GLINT_POINT_SLACK_FLOAT 0x1p-20
 

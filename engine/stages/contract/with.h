@@ -1,7 +1,7 @@
 /// Compile-time switches for parts of the kernels. `make bench-effects` leaves out one part per build
 /// (-DGLINT_WITH_MESH=0) to check that the part costs nothing in scenes that do not need it. All other builds have
-/// all parts. A part is left out where its kernel enters the table (simd/table.c), where its kind is distinguished
-/// from others, or where its name below is tested.
+/// all parts. Three places leave out a part: the table of kernels (simd/table.c), the code that distinguishes kinds,
+/// and the code that tests a name below.
 #ifndef GLINT_WITH_H
 #define GLINT_WITH_H
 
