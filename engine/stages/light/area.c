@@ -1,4 +1,4 @@
-// The light of an area light, with its shadows.
+// The light from an area light, with its shadows.
 #include "engine/stages/light/soft_light.h"
 
 #if GLINT_WITH_AREA && GLINT_WITH_SHADOW

@@ -1,5 +1,5 @@
-// caps: the visible share of a sphere light from each point past spheres and planes, in closed form. Contract:
-// stages.h, occlude.
+// caps: the share of a sphere light that each point sees past spheres and planes, in closed form. Contract: stages.h,
+// occlude.
 //
 // Shares are multiplied in the order of the table, whatever the order in which the index finds the spheres.
 #ifndef GLINT_LIGHT_CAPS_H
@@ -13,18 +13,19 @@
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_CAPS 16 ///< primitives that a group looks up at a time
+#define GLINT_CAPS 16 ///< number of primitives that a group looks up at a time
 
 /// The light as seen from the points of a group.
 typedef struct R(light_cap) {
-    _Alignas(64) real direction[3][GLINT_GROUP]; ///< unit, towards its centre
-    _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< of half the cap's radius
-    _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent, in the light's units
-    _Alignas(64) real visible[GLINT_GROUP]; ///< visible share so far
+    _Alignas(64) real direction[3][GLINT_GROUP]; ///< unit vector towards the light's centre
+    _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< sine and cosine of half the cap's angular radius
+    _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent from the point to the light, in the light's
+        ///< units
+    _Alignas(64) real visible[GLINT_GROUP]; ///< visible share of the light so far
     unsigned around; ///< lanes inside the light
 } R(light_cap);
 
-/// Returns atan2(y, x) for y, x >= 0, by the series of an eighth of the angle.
+/// Returns atan2(y, x) for y, x >= 0, from the series for an eighth of the angle.
 static inline vr R(angle_of)(vr y, vr x)
 {
     const vr one = r_set(1);
@@ -62,8 +63,8 @@ static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light
     }
 }
 
-/// Returns the part of a cap of half sine `ss` and half cosine `cs` that lies in a cap of `sa`, `ca`; `sg`, `cg`: of
-/// the angle between their centres.
+/// Returns the share of one cap that lies inside another cap. ss, cs: sine and cosine of half the first cap's radius;
+/// sa, ca: likewise of the other cap; sg, cg: of half the angle between the centres.
 static inline vr R(covered_part)(vr ss, vr cs, vr sa, vr ca, vr sg, vr cg)
 {
     const vr zero = r_set(0), one = r_set(1), two = r_set(2);
@@ -87,8 +88,8 @@ static inline vr R(covered_part)(vr ss, vr cs, vr sa, vr ca, vr sg, vr cg)
     return r_select(settled, part, r_min(r_max(lens, zero), one));
 }
 
-/// Returns the share of the light's diameter above a height over its centre, for points on the side of the plane that
-/// the light extends to.
+/// Returns the share of the light's diameter above a height over its centre, for points on the side of the plane to
+/// which the light extends.
 static inline double R(share_of_diameter)(double radius, double height)
 {
     const double share = (radius + height) / (2 * radius);
@@ -104,7 +105,8 @@ static inline double R(depth_of_light)(const glint_occlude_args *args, const gli
     return prim->kind == GLINT_PRIM_PLANE ? DOT(prim->normal, f) : prim->radius - sqrt(DOT(f, f));
 }
 
-/// Multiplies the group's shares by the share that a primitive leaves visible. own: lanes that are on the primitive.
+/// Multiplies the group's shares by the share that a primitive leaves visible. own: lanes whose point is on the
+/// primitive.
 static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned own, unsigned lit,
                      R(light_cap) * cap)
 {

@@ -1,18 +1,19 @@
-// cone: the positions of samples of a ball, in the cone in which a point sees it. All of it is double, even if real
-// is float: the cone of a light 1e9 radii away is narrower than float's rounding error. Contract: stages.h, at
-// glint_light_sample.
+// cone: the positions of samples of a ball-shaped light, in the cone in which a point sees the ball. All of this is
+// computed in double, even if real is float: the cone of a light 1e9 radii away is narrower than float's rounding
+// error. Contract: stages.h, at glint_light_sample.
 #ifndef GLINT_LIGHT_CONE_H
 #define GLINT_LIGHT_CONE_H
 
 #include "engine/stages/light/light_sample.h"
 #include "engine/stages/simd/real.h"
 
-/// The common data of the samples of VD points.
+/// The data that all samples of VD points share.
 typedef struct R(cone) {
-    vd point[3], away[3]; ///< away: to the ball's centre, in the light's units
+    vd point[3], away[3]; ///< away: vector from the point to the ball's centre, in the light's units
     vd axis[3], tangent[3], bitangent[3];
     vd distance, length2, sine, sine2, part; ///< of `away`; q, q2 and h of cone_sample.h
-    vd before, beyond; ///< squared length of a tangent, for points outside; of the half chord, for points inside
+    vd before, beyond; ///< squares: of the length of a tangent, for points outside; of half the chord, for points
+        ///< inside
     dm within;
 } R(cone);
 
@@ -73,7 +74,8 @@ static inline vd R(aim_in_cone)(const R(cone) * cone, vd u, vd cosine, vd sine, 
     return d_select(cone->within, inside, (cone->distance * cone->before) / far);
 }
 
-/// Computes the samples of `count` lamps for the points of the group at `at`, into the set.
+/// Computes the samples in `light_sample`, `count` of them, for the points of the group at `at`, and stores them in
+/// the set.
 static __attribute__((noinline)) void R(place_in_cone)(const glint_light_sample *const light_sample[], uint32_t count, double scale,
                              const void *const point[3], const void *const normal[3], size_t at,
                              R(light_sample_set) * set)

@@ -1,4 +1,5 @@
-/// The reference of cone: one sample of a ball for one point, in plain C. Contract: stages.h, at glint_light_sample.
+/// The reference for cone.h: one sample of a ball for one point, in plain C. Contract: stages.h, at
+/// glint_light_sample.
 #ifndef GLINT_CONE_SAMPLE_H
 #define GLINT_CONE_SAMPLE_H
 
@@ -17,7 +18,8 @@ static inline double glint_cone_dot(const double a[3], const double b[3])
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/// Computes a direction at the polar angle (sine, cosine) from a unit vector, turned around it by x and y.
+/// Computes a direction at the polar angle given by `cosine` from the unit vector n. x and y: cosine and sine of the
+/// azimuth around n, times the sine of the polar angle.
 static inline void glint_cone_turn(const double n[3], double x, double y, double cosine, double out[3])
 {
     const double g = n[2] >= 0 ? 1 : -1;

@@ -1,9 +1,10 @@
-// layer: segments from a tile's points to the samples of an area light, sorted into cells of a plane that they cross.
-// At the depth of the occluders, segments that start far apart may be close to each other. A layer perpendicular to
-// the light's direction sorts them by their positions in its own plane. Float and conservative, like walk.h.
+// layer: sorts the segments from a tile's points to the samples of an area light into cells of a plane that the
+// segments cross. Segments that start far apart may be close to each other at the depth of the occluders. A layer is
+// a plane perpendicular to the direction of the light, and sorts the segments by their positions in this plane. All
+// of this is float and conservative, like walk.h.
 //
 // The frame: origin in the middle of the points, two axes perpendicular to the direction to the light, and one, h,
-// along it, right-handed. A segment is at base + slope h.
+// along it, right-handed. At height h, a segment is at the position base + slope h.
 #ifndef GLINT_LIGHT_LAYER_H
 #define GLINT_LIGHT_LAYER_H
 
@@ -11,29 +12,30 @@
 #include "engine/stages/occlude/beam.h"
 #include "engine/stages/simd/elementary.h"
 
-#define LAYER_ACROSS 32 ///< columns and rows of cells
+#define LAYER_ACROSS 32 ///< number of columns and of rows of cells
 #define LAYER_RAYS (GLINT_TILE_SAMPLES * GLINT_LIGHT_CHUNK)
-#define LAYER_STEEPEST 2 ///< largest slope: beyond it, a perpendicular plane is of little use
+#define LAYER_STEEPEST 2 ///< largest slope of a segment: steeper segments spread too much over a perpendicular plane
 
-/// Bound of the error of a segment or a primitive, relative to its numbers: six roundings of a position in the frame,
-/// which a slope of at most LAYER_STEEPEST triples, and as many for base, slope and the resulting position.
+/// Error bound of a segment's or a primitive's coordinates, relative to their size: six roundings of a position in
+/// the frame, which a slope of at most LAYER_STEEPEST triples, and as many for base, slope and the resulting
+/// position.
 #define LAYER_SLACK 0x1p-18f
 
-/// The frame, and the ends of all segments in it.
+/// The frame, and the ends of all segments in this frame.
 typedef struct layer_frame {
     float origin[3], axis[3][3]; ///< in the index's frame
-    double exact[3]; ///< origin before rounding
+    double exact[3]; ///< the origin before it was rounded
     float slack; ///< bound of a segment's rounding error, at any h
     float lowest, highest; ///< smallest and largest h of a point
     float nearest, farthest; ///< smallest and largest h of a sample
     float per_gap; ///< 1 / (nearest - highest)
-    float width[2]; ///< of all segments, halfway
-    float slope[2][2]; ///< smallest and largest
-    _Alignas(64) float point[3][GLINT_TILE_SAMPLES]; ///< of lit groups
+    float width[2]; ///< width, along both axes, of the bundle of all segments halfway to the light
+    float slope[2][2]; ///< smallest and largest slope of a segment, along the two axes
+    _Alignas(64) float point[3][GLINT_TILE_SAMPLES]; ///< positions of the points of lit groups
     _Alignas(64) float light[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
 } layer_frame;
 
-/// The lanes of the groups of all samples that cross the rectangle, and their cells.
+/// For all samples, the lanes of each group whose segments cross the rectangle, and the cells of these segments.
 typedef struct layer_cells {
     uint16_t within[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
     _Alignas(64) uint32_t cell[LAYER_RAYS];
@@ -44,13 +46,15 @@ typedef struct layer_rays {
     layer_cells unsorted; ///< before they are sorted
     float first[2], last[2], cells[2]; ///< the rectangle; cells per unit
     _Alignas(64) float base[2][LAYER_RAYS + GLINT_GROUP], slope[2][LAYER_RAYS + GLINT_GROUP];
-    _Alignas(64) float from[LAYER_RAYS + GLINT_GROUP]; ///< h of the point; +inf for blocked segments
-    uint32_t on[LAYER_RAYS + GLINT_GROUP]; ///< the primitive of the point; with BEAM_BACK: seen from behind
-    uint16_t at[LAYER_RAYS + GLINT_GROUP]; ///< GLINT_TILE_SAMPLES times the sample, and the point
-    uint16_t begin[LAYER_ACROSS * LAYER_ACROSS + 1]; ///< where the segments of each cell begin
+    _Alignas(64) float from[LAYER_RAYS + GLINT_GROUP]; ///< h of the segment's point; +inf for a blocked segment
+    uint32_t on[LAYER_RAYS + GLINT_GROUP]; ///< the primitive that the point is on, with the flag BEAM_BACK if it is
+        ///< seen from behind
+    uint16_t at[LAYER_RAYS + GLINT_GROUP]; ///< GLINT_TILE_SAMPLES times the number of the sample, plus the number of
+        ///< the point
+    uint16_t begin[LAYER_ACROSS * LAYER_ACROSS + 1]; ///< index of the first segment of each cell
 } layer_rays;
 
-/// VF segments of one sample.
+/// A vector of VF segments to one sample.
 typedef struct layer_lanes {
     vf base[2], slope[2], from;
 } layer_lanes;
@@ -68,8 +72,8 @@ static inline layer_lanes lanes_of_layer(const layer_frame *frame, uint32_t s, s
     return out;
 }
 
-/// Computes axes along the line from the middle of the points to the middle of the light. Returns false if these
-/// coincide.
+/// Computes axes along the line from the middle of the points to the middle of the light. Returns false if the two
+/// middles coincide.
 static bool make_layer_axes(const float lower[3], const float upper[3], const light_bounds *light, layer_frame *frame)
 {
     double offset[3], across[3], down[3], least[3] = { 0, 0, 0 };
@@ -114,7 +118,7 @@ static inline vi cell_in_layer(const layer_rays *rays, int j, vf x)
 }
 
 /// Computes the cells of the unoccluded segments at h. Returns the number of segments that cross the rectangle;
-/// next[c]: of these, in cell c.
+/// next[c]: number of segments in cell c.
 static uint32_t find_cells(const glint_occlude_args *args, const layer_frame *frame, float h, layer_rays *rays,
                            uint16_t next[LAYER_ACROSS * LAYER_ACROSS])
 {

@@ -1,5 +1,5 @@
-// layer_blocker: one primitive against the segments in its cells of a layer. Float settles most of them. The rest
-// become pairs of a segment and a primitive, which are decided in real. Contract: stages.h, occlude.
+// layer_blocker: tests one primitive against the segments in the primitive's cells of a layer. A float test decides
+// most segments. The other segments are paired with the primitive and decided in real. Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_LAYER_BLOCKER_H
 #define GLINT_LIGHT_LAYER_BLOCKER_H
 
@@ -70,7 +70,7 @@ static inline void R(add_segment)(R(layers) * l, const glint_prim *prim, uint32_
 
 // ---- The filter ----
 
-/// Segments of a run: those that may be blocked, and those that certainly are.
+/// Bit masks of the segments of a run that may be blocked, and of those that certainly are.
 typedef struct layer_lanes_hit {
     unsigned near, certain;
 } layer_lanes_hit;
@@ -79,17 +79,19 @@ typedef struct layer_lanes_hit {
 typedef struct R(layer_blocker) {
     const layer_prim *at;
     const glint_prim *prim;
-    bool torus, clear; ///< clear: no sample is inside of it, or as close to the points as it is
-    float center[3], reach2, inner2; ///< of a sphere: squares of the distances from its centre within which a segment
-        ///< may hit it, and certainly hits it
-    float above; ///< the h that a point is certainly below: of a triangle its top, of a sphere its centre
-    float doubt; ///< of a triangle: error bound of its edge functions
-    float unit[3][3], limit; ///< of a solid: from the frame to the space of its unit shape, by axes of the frame;
-        ///< maximum size there
-    int form; ///< of a solid
+    bool torus, clear; ///< clear: every sample is outside of the primitive, and farther from the points than the
+        ///< primitive
+    float center[3], reach2, inner2; ///< for a sphere: its centre, and the squared distances from the centre within
+        ///< which a segment may hit the sphere, and certainly hits it
+    float above; ///< a point with h below this is certainly below the primitive: a triangle's top, or a sphere's
+        ///< centre
+    float doubt; ///< for a triangle: error bound of the edge functions
+    float unit[3][3], limit; ///< for a solid: the images of the frame's axes in the space of the unit shape; limit:
+        ///< maximum size of the shape there
+    int form; ///< for a solid: the form
 } R(layer_blocker);
 
-/// Tests a triangle: a segment crosses it if all corners, as seen along it, are on one side.
+/// Tests a triangle: a segment crosses it if, as seen along the segment, it is on the same side of all edges.
 INNER layer_lanes_hit R(test_corners)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf base[2] = { f_load_any(rays->base[0] + i), f_load_any(rays->base[1] + i) };
@@ -109,7 +111,7 @@ INNER layer_lanes_hit R(test_corners)(const layer_rays *rays, const R(layer_bloc
     const fm front = fm_and(f_lt(doubt, least), front_side), back = fm_and(f_lt(most, -doubt), back_side);
     const vi owner = f_bits(f_load_any((const float *)(rays->on + i))), id = i_set(b->at->id);
     const fm own = i_eq(i_and(owner, i_set(~BEAM_BACK)), id), seen_behind = i_eq(owner, i_set(b->at->id | BEAM_BACK));
-    // a triangle's own points are dark if light and viewer are on different sides
+    // a triangle blocks the light from points on itself if light and viewer are on different sides
     const fm lit = fm_or(fm_andnot(front_side, seen_behind), fm_and(back_side, seen_behind));
     const fm there = f_le(from, f_set(b->at->high[2]));
     layer_lanes_hit out;
@@ -118,7 +120,8 @@ INNER layer_lanes_hit R(test_corners)(const layer_rays *rays, const R(layer_bloc
     return out;
 }
 
-/// Tests a sphere: a segment certainly hits it if it is inside of it at the height of its centre.
+/// Tests a sphere: a segment certainly hits the sphere if it is inside the sphere at the height of the sphere's
+/// centre.
 INNER layer_lanes_hit R(test_middle)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };
@@ -180,7 +183,7 @@ INNER layer_lanes_hit R(test_extent)(const layer_rays *rays, const R(layer_block
     return (layer_lanes_hit) { fm_bits(in), 0 };
 }
 
-/// Tests the segments from `i` on and before `end`.
+/// Tests the segments from index `i` up to, not including, `end`.
 INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t i, uint32_t end)
 {
     for (; i < end; i += VF) {
@@ -201,8 +204,8 @@ INNER void R(block_segments)(R(layers) * l, const R(layer_blocker) * b, uint32_t
     }
 }
 
-/// Returns a bound of the error of a segment and a primitive, at heights from `least` to `most`. Beyond the ends of a
-/// segment the error grows with the extrapolation.
+/// Returns an error bound for the positions of segments and a primitive at heights from `least` to `most`. Beyond the
+/// ends of a segment the error grows with the extrapolation.
 static inline float R(slack_at)(const layer_frame *frame, const layer_prim *prim, float least, float most)
 {
     float size = 0;
@@ -242,7 +245,7 @@ static void R(make_ball)(const R(layers) * l, R(layer_blocker) * out)
     out->clear = out->clear && h < frame->nearest && R(light_outside)(l->tile, prim);
 }
 
-/// Fills in the data by shape. `wide`: as in make_blocker.
+/// Sets the fields that depend on the kind of primitive. `wide`: as in make_blocker.
 static void R(make_shape)(const R(layers) * l, float wide, R(layer_blocker) * out)
 {
     const layer_frame *frame = &l->frame;

@@ -1,5 +1,5 @@
-// layer_frame: the data that the layers of a tile share, and their frame (layer.h), which is computed from points and
-// samples. Contract: stages.h, occlude.
+// layer_frame: the data that the layers of a tile share, and the frame of the layers (layer.h), which is computed
+// from the points and the samples. Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_LAYER_FRAME_H
 #define GLINT_LIGHT_LAYER_FRAME_H
 
@@ -17,8 +17,8 @@
 /// A primitive in the frame.
 typedef struct layer_prim {
     uint32_t id;
-    float low[3], high[3]; ///< of its box
-    float corner[3][3]; ///< of a triangle
+    float low[3], high[3]; ///< bounds of the primitive's box
+    float corner[3][3]; ///< the corners of a triangle
 } layer_prim;
 
 typedef struct R(layers) {
@@ -27,14 +27,15 @@ typedef struct R(layers) {
     layer_rays rays;
     int count;
     layer_prim prim[LAYER_PRIMS];
-    uint16_t order[LAYER_PRIMS]; ///< by layer
-    float least[LAYER_PRIMS][2], most[LAYER_PRIMS][2]; ///< bounds of the positions at which segments that hit it cross
-        ///< the plane of its layer
+    uint16_t order[LAYER_PRIMS]; ///< the primitives in the order of their layers
+    float least[LAYER_PRIMS][2], most[LAYER_PRIMS][2]; ///< bounds of the positions at which segments that hit the
+        ///< primitive cross the plane of the primitive's layer
     uint8_t first[LAYER_PRIMS][2], last[LAYER_PRIMS][2]; ///< the cells of these positions
     uint32_t unoccluded; ///< number of unoccluded segments
     R(beam_batch) batch;
-    _Alignas(64) real light[3][GLINT_GROUP]; ///< of the batch: the samples
-    _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< and the rays that hit the points
+    _Alignas(64) real light[3][GLINT_GROUP]; ///< the positions of the samples, for the segments of the batch
+    _Alignas(64) real direction[3][GLINT_GROUP], slack[GLINT_GROUP]; ///< the rays that hit the points of the batch,
+        ///< and the points' slack
 } R(layers);
 
 /// Extends two bounds by the positions of lanes.
@@ -88,7 +89,7 @@ static void R(place_samples)(const R(shadow_tile) * tile, layer_frame *frame, vf
 static bool R(aim_layers)(const R(shadow_tile) * tile, const uint16_t *lit, layer_frame *frame)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    vf least[2][3], most[2][3]; // of the points, of the samples
+    vf least[2][3], most[2][3]; // bounds of the points, and of the samples
     float low[2][3], high[2][3], size = 0, steepest = 0;
     if (!make_layer_axes(tile->lower, tile->upper, &tile->light, frame))
         return false;

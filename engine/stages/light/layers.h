@@ -1,7 +1,7 @@
 // occlude_by_layers: computes which samples of an area light reach the points, for tiles with too many occluders for
-// a list. The index is traversed once for all segments. The primitives found are sorted into layers (layer.h) and
-// tested there. Certain results of the float test are final; the rest is decided in real, from point to sample.
-// Contract: stages.h, occlude.
+// a list. All segments traverse the index together, once. The primitives that they reach are sorted into layers
+// (layer.h) and tested there. Certain results of the float test are final; the other segments are decided in real,
+// from point to sample. Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_LAYERS_H
 #define GLINT_LIGHT_LAYERS_H
 
@@ -58,7 +58,7 @@ static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
             box_axis(node, k, i, frame->origin[k], frame->slack, &middle[k], &half[k]);
         for (int j = 0; j < 3; j++) {
             box_along(middle, half, frame->axis[j], &least[j], &most[j]);
-            if (j == 2) { // parts beyond the ends of the segments do not matter
+            if (j == 2) { // clips to the ends of the segments
                 least[j] = f_max(least[j], f_set(frame->lowest - frame->slack));
                 most[j] = f_min(most[j], f_set(frame->farthest + frame->slack));
             }
@@ -85,9 +85,9 @@ static void R(note_prims)(R(layers) * l, const glint_node *node, unsigned mask)
 
 // ---- Layers ----
 
-/// Returns the best number of layers for the recorded primitives, with middles from `low` to `high`. The costs are in
-/// nanoseconds, measured with vectors of 16: 2 to sort a segment, 12 to test a vector of them, 40 to begin a
-/// primitive, and 4 for each of its rows of cells.
+/// Returns the best number of layers for the recorded primitives, whose middles are at heights from `low` to `high`.
+/// The costs are in nanoseconds, measured with vectors of 16: 2 to sort a segment, 12 to test a vector of segments,
+/// 40 to begin a primitive, and 4 for each row of cells of the primitive.
 static int R(count_layers)(const R(layers) * l, float low, float high)
 {
     const layer_frame *frame = &l->frame;
@@ -220,8 +220,8 @@ static void R(begin_segments)(R(layers) * l)
         l->batch.args.direction[k] = l->direction[k];
 }
 
-/// Computes args->open for all samples. Returns false, with nothing changed, if there is no memory, or if no frame
-/// fits these points and samples.
+/// Computes args->unoccluded for all samples. Returns false, with nothing changed, if there is no memory, or if these
+/// points and samples allow no frame.
 static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
 {
     const glint_occlude_args *args = tile->args;
@@ -230,7 +230,7 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
     _Static_assert(sizeof *l <= GLINT_OCCLUDE_SCRATCH, "the layers fit");
     if (!l || tile->unbounded > GLINT_OCCLUDERS || R(is_cone)(args->light_sample[0]) || !R(aim_layers)(tile, lit, &l->frame))
         return false;
-    tile->count = tile->unbounded; // these are tested by a list
+    tile->count = tile->unbounded; // unbounded primitives are tested by a list
     R(occlude_listed)(tile, lit);
     l->tile = tile;
     l->count = 0;
@@ -243,7 +243,7 @@ static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
     R(walk_layers)(l);
     return true;
 }
-#else // for float decisions see occlude_walking
+#else // if float decides, occlude_walking is used
 
 static bool R(occlude_by_layers)(R(shadow_tile) * tile, const uint16_t *lit)
 {

@@ -1,6 +1,7 @@
 // light: the effect of one light at each point, before shadows and colours. The geometry is real; square root,
-// division and logarithm follow in float for the whole group, as float is enough. This file has spots and area
-// lights, and functions for plain.h and lit_surface.h; the stage itself is in plain.h. Contract: stages.h.
+// division and logarithm follow in float for the whole group, because float is accurate enough for them. This file
+// has spots and area lights, and functions for plain.h and lit_surface.h; the stage itself is in plain.h. Contract:
+// stages.h.
 #ifndef GLINT_LIGHT_LIGHT_H
 #define GLINT_LIGHT_LIGHT_H
 
@@ -14,12 +15,13 @@ typedef struct R(lit_group) {
     _Alignas(64) real along[GLINT_GROUP]; ///< n.l, in the light's units
     _Alignas(64) real distance2[GLINT_GROUP];
     _Alignas(64) real x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and the same minus 1
-    _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< of a spot
+    _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< for a spot:
+        ///< cosine of the angle to the axis, the cosine minus 1, and the smooth step
     unsigned lit, shiny;
-    vf brightest; ///< over the groups so far, by lane
+    vf brightest; ///< maximum over the groups so far, for each lane
 } R(lit_group);
 
-/// Computes (r.v)^2 as num / den. Returns the lanes that have it.
+/// Computes (r.v)^2 as num / den. Returns the lanes with a highlight.
 INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
 {
     vr rv = (r_set(2) * nl) * nv - lv;
@@ -28,7 +30,7 @@ INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
     return r_lt(r_set(0), rv);
 }
 
-/// Computes (n.h)^2 likewise, with the same h in num and den. At grazing light h is a difference with few digits
+/// Computes (n.h)^2 likewise, from the same h in num and den. At grazing light h is a difference with few digits
 /// left: if it were rounded differently in num and den, the error would grow by 1 / |h|^2, and then by the shininess.
 INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a, vr *num, vr *den)
 {
@@ -40,15 +42,15 @@ INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a
     return nh;
 }
 
-/// Data shared by a light's samples: the surfaces of one group, and one vector of its lanes.
+/// Data shared by a light's samples: the surfaces of one group, and one vector of the group's lanes.
 typedef struct R(lit_point) {
-    unsigned phong, blinn; ///< lanes by the highlight of their material
-    _Alignas(64) float least[GLINT_GROUP]; ///< of their material, if `sparing`; otherwise 0
+    unsigned phong, blinn; ///< lanes whose material has a Phong highlight; a Blinn-Phong highlight
+    _Alignas(64) float least[GLINT_GROUP]; ///< `least` of each lane's material, if `sparing`; otherwise 0
     R(group_directions) directions;
     vr point[3], normal[3];
-    bool aimed; ///< the next field is set
+    bool aimed; ///< true: the next field is set
     vr direction[3];
-    bool viewed; ///< the next fields are set
+    bool viewed; ///< true: the next fields are set
     vr a, nv; ///< a = length2(direction)
 } R(lit_point);
 
@@ -63,7 +65,7 @@ INNER void R(view_lanes)(const glint_light_args *args, size_t at, int i, R(lit_p
     surface->viewed = true;
 }
 
-/// 1 / (c0 + (c1 d + c2 d^2))
+/// Returns 1 / (c0 + (c1 d + c2 d^2)).
 INNER vr R(fall_off)(const glint_light_args *args, vr distance)
 {
     const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
@@ -188,7 +190,7 @@ INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_materia
                 f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), least, f_load(surface->least + i)));
 }
 
-/// Sorts lanes by the highlight of their material.
+/// Sets the highlights of the lanes `rest`, material by material.
 INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned rest, R(lit_point) * surface)
 {
     surface->phong = surface->blinn = 0;

@@ -9,9 +9,9 @@
 #define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
 #define LIGHT_SPOT 1
 #define LIGHT_LIGHT_SAMPLE 2
-#define LIGHT_CONE 3 // lamps whose samples are computed for each group
+#define LIGHT_CONE 3 // lights whose samples are computed for each group
 
-/// A lamp's lanes, in the type that the stage computes with.
+/// One sample's positions and normals for all lanes, in the type that the stage computes with.
 typedef struct R(light_sample_lanes) {
     const real (*position)[GLINT_GROUP], (*normal)[GLINT_GROUP];
     const double (*exact_position)[GLINT_GROUP]; ///< the unrounded positions
@@ -21,13 +21,13 @@ typedef struct R(light_sample_lanes) {
 typedef struct R(light_sample_set) {
     R(light_sample_lanes) light_sample[GLINT_LIGHT_CHUNK];
 #if GLINT_REAL == 32
-    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< the memory that these point to
+    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< memory for the rounded positions and
+        ///< normals
 #endif
-    // for GLINT_EMIT_CONE, of the current group:
+    // for GLINT_EMIT_CONE, the samples of the current group:
     _Alignas(64) double exact_position[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
     _Alignas(64) real direction[GLINT_LIGHT_CHUNK][3][GLINT_GROUP],
-        far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< from the points:
-        ///< unit directions, and distances
+        far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< unit directions and distances from the points to the samples
     _Alignas(64) real weight[GLINT_GROUP]; ///< the cone's solid angle over pi
 } R(light_sample_set);
 
@@ -57,7 +57,8 @@ static inline void R(load_light_samples)(const glint_light_sample *const light_s
     }
 }
 
-/// Returns the lanes within the cone. Also computes their cosine, the cosine minus 1, and the smooth step there.
+/// Returns the lanes within the cone. Also computes the cosine of the angle to the axis, this cosine minus 1, and the
+/// smooth step.
 static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, float cosine[], float less_1[], float step[])
 {
     const vr axis[3] = { r_set(spot->axis[0]), r_set(spot->axis[1]), r_set(spot->axis[2]) };
@@ -82,8 +83,8 @@ static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf le
     return step * f_exp2(f_set(spot->exponent) * f_log2(f_select(lit, cosine, one), f_select(lit, less_1, f_set(0))));
 }
 
-/// Returns the lanes towards which a sample emits; *m: the cosine at the lamp, times the distance in the light's
-/// units.
+/// Returns the lanes towards which a sample emits; *m: the cosine at the light's surface, times the distance in the
+/// light's units.
 static inline rm R(in_front)(const glint_light_sample *light_sample, const R(light_sample_lanes) * lanes, int i,
                              const vr l[3], vr *m)
 {

@@ -1,6 +1,6 @@
-// lit_balls: surface and light of one plain lamp, for groups that show only spheres in some or all of their lanes.
-// All lanes are processed together, each with its own sphere. The arithmetic is that of surface.h and plain.h.
-// Contract: stages.h.
+// lit_balls: surface and light of one plain light in one pass, for groups that only show spheres, in some or all
+// lanes. All lanes are processed together, each with its own sphere. The arithmetic is the same as in surface.h and
+// plain.h. Contract: stages.h.
 #ifndef GLINT_LIGHT_LIT_BALLS_H
 #define GLINT_LIGHT_LIT_BALLS_H
 
@@ -11,7 +11,7 @@
 #include "engine/stages/simd/real.h"
 #include "engine/stages/surface/surface.h"
 
-/// The spheres of a group, one per lane; 0 in lanes without a hit.
+/// The spheres of a group, one per lane; all fields are 0 in lanes without a hit.
 typedef struct R(ball_lanes) {
     vr center[3][LIT_PARTS], radius[LIT_PARTS], scale[LIT_PARTS], inverse_radius[LIT_PARTS];
 } R(ball_lanes);
@@ -41,8 +41,8 @@ INNER void R(put_ball)(const glint_prim *prim, unsigned lanes, R(ball_lanes) * b
     }
 }
 
-/// Looks up the spheres of the lanes in `hits`, and their constants. Returns false if some hit is on another kind of
-/// primitive.
+/// Looks up the spheres of the lanes in `hits`, and the constants of these spheres. Returns false if some hit is on
+/// another kind of primitive.
 INNER bool R(find_balls)(const glint_surface_args *surface, const glint_light_args *light, size_t at, unsigned hits,
                          R(surface_walk) * walk, R(ball_lanes) * balls, R(lit_point) * point)
 {
@@ -66,7 +66,7 @@ INNER bool R(find_balls)(const glint_surface_args *surface, const glint_light_ar
 }
 
 /// Computes points and normals of part j. Returns the lanes in which the camera is near enough to the sphere; *back:
-/// of these, those seen from behind.
+/// the lanes of these that are seen from behind.
 INNER unsigned R(find_ball_part)(const glint_surface_args *surface, const R(ball_lanes) * balls,
                                  R(group_directions) directions, size_t at, int j, R(plain_part) * part, unsigned *back)
 {

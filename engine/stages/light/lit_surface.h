@@ -1,5 +1,5 @@
-// lit_surface: surface and light of one plain lamp in one pass over each group, so that points and normals stay in
-// registers. The arithmetic is that of surface.h and light.h. Contract: stages.h.
+// lit_surface: surface and light of one plain light in one pass over each group, so that points and normals stay in
+// registers. The arithmetic is the same as in surface.h and light.h. Contract: stages.h.
 #ifndef GLINT_LIGHT_LIT_SURFACE_H
 #define GLINT_LIGHT_LIT_SURFACE_H
 
@@ -12,14 +12,14 @@
 
 #define LIT_PARTS (GLINT_GROUP / VR)
 
-/// The real part of a group.
+/// The results of a group's computation in real.
 typedef struct R(lit_whole) {
     vr nl[LIT_PARTS], l2[LIT_PARTS]; ///< n.l, and the squared length of l, in the light's units
-    vr num[LIT_PARTS], den[LIT_PARTS]; ///< of (r.v)^2 or (n.h)^2, in lanes of `some`
-    unsigned lit, back, some; ///< lanes
+    vr num[LIT_PARTS], den[LIT_PARTS]; ///< numerator and denominator of (r.v)^2 or (n.h)^2, in lanes of `some`
+    unsigned lit, back, some; ///< lanes above the light's horizon; seen from behind; with a highlight
 } R(lit_whole);
 
-/// Data read by all groups of a call, as real, in memory.
+/// Data that all groups of a call read, as real, in memory.
 typedef struct R(lit_call) {
     real position[3], scale;
     bool scaled;
@@ -31,7 +31,7 @@ typedef struct R(lit_wants) {
     bool normals, slack;
 } R(lit_wants);
 
-/// Computes VR lanes of the real part, at p, where n is the outward normal, seen along d.
+/// Computes VR lanes of the part in real, for points p with outward normals n, seen along d.
 INNER void R(light_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
                          const R(lit_wants) wants, const glint_shade_material *material, const vr d[3], const vr n[3],
                          const vr p[3], size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
@@ -77,7 +77,7 @@ INNER void R(light_part)(const glint_surface_args *surface, const glint_light_ar
     whole->some |= rm_bits(rm_and(ahead, rm_andnot(some, spared))) << i;
 }
 
-/// Computes the parts of a group that shows one solid, plane or sphere near the eye; `kind` is a constant.
+/// Computes the vectors of a group that shows one solid, one plane, or one sphere near the eye; `kind` is a constant.
 INNER void R(light_parts)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
                           R(seen_slot) * slot, const R(lit_wants) wants, const glint_prim_kind kind, const glint_shade_material *material,
                           R(group_directions) directions, size_t at, R(point_box) * box, R(lit_whole) * whole)
@@ -116,7 +116,7 @@ INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
     return f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
 }
 
-/// Computes the float part, for light or sample s. `shiny`, a constant: `some` may have lanes.
+/// Computes the part in float, for light or sample s. `shiny`, a constant: whether any lane may have a highlight.
 INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, const bool shiny, uint32_t s,
                            size_t at, vf *brightest)
 {
@@ -143,8 +143,8 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
 }
 
 /// Processes a group that shows one sphere, plane or solid in every lane, from a side that is not dark: the common
-/// case. Returns whether the group is one. mixed: surface->mixed; normals: whether all are wanted; both are
-/// constants.
+/// case. Returns whether the group was of this kind. Constants: mixed: surface->mixed; normals: whether all normals
+/// are wanted.
 INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
                           const bool mixed, const bool normals, R(group_cursor) cursor, R(point_box) * box,
                           vf *brightest)

@@ -1,5 +1,6 @@
-// plain: lights without a surface or a cone: one, or several that differ only in position. Values that do not depend
-// on the light are computed once for all of them. The arithmetic is that of light.h. Contract: stages.h.
+// plain: lights without a surface or a cone: one light, or several lights that differ only in position. Values that
+// do not depend on the light are computed once for all lights. The arithmetic is the same as in light.h. Contract:
+// stages.h.
 #ifndef GLINT_LIGHT_PLAIN_H
 #define GLINT_LIGHT_PLAIN_H
 
@@ -8,14 +9,14 @@
 #include "engine/stages/light/lit_surface.h"
 #include "engine/stages/simd/real.h"
 
-/// VR points, with the data that all lights share.
+/// A vector of VR points, with the data that all lights share.
 typedef struct R(plain_part) {
     vr point[3], normal[3], direction[3];
     vr a, nv; ///< length2(direction), and n.v
 } R(plain_part);
 
-/// Computes (r.v)^2 or (n.h)^2 as a fraction, for one light's lanes of a part that have a highlight which is not
-/// spared. `whole` has the light's other results.
+/// Computes (r.v)^2 or (n.h)^2 as a fraction, for one light, in the lanes of a vector that have a highlight and for
+/// which `sparing` does not leave it out. `whole` has the light's other results.
 INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) * part, const vr l[3], int j,
                               unsigned lit, R(lit_whole) * whole)
 {
@@ -43,8 +44,8 @@ INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) 
 /// The kinds of light positions, each compiled separately; light_plain chooses.
 enum { R(PLAIN_AFAR), R(PLAIN_NEAR), R(PLAIN_SCALED) };
 
-/// Computes one light's real part of a group, in which the lanes of `open` may be lit. `kind` and `shiny` (whether
-/// the group has highlights) are constants.
+/// Computes one light's part in real for a group, of which the lanes of `open` may be lit. `kind` and `shiny`
+/// (whether the group has highlights) are constants.
 INNER void R(plain_parts)(const glint_light_args *args, const int kind, const bool shiny, const R(lit_point) * surface,
                           const R(plain_part) * parts, const double *position, unsigned open, R(lit_whole) * whole)
 {

@@ -1,4 +1,4 @@
-// The light that reaches points, before shadows.
+// Computes the light that reaches points, before shadows.
 #include "engine/stages/light/lit_balls.h"
 #include "engine/stages/light/lit_surface.h"
 #include "engine/stages/light/plain.h"
@@ -15,7 +15,7 @@ INNER bool R(try_balls)(const glint_surface_args *surface, const glint_light_arg
     return done;
 }
 
-/// mixed, normals: constants.
+/// Processes all groups of a call. mixed, normals: constants.
 INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool mixed,
                            const bool normals)
 {

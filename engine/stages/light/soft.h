@@ -1,7 +1,7 @@
-// soft: the points that the samples of an area light reach. Each occluder is first tested against the bounding ball of
-// the light, in float, for 16 points at a time. The test decides without rays if the occluder hides all of the ball
-// from a point, or none of it. Otherwise the occluder is tested against all samples of a group at once. Every decision
-// is the same as in occlude.h.
+// soft: computes which points the samples of an area light reach. Each occluder is first tested against the bounding
+// ball of the light, in float, for 16 points at a time. This test needs no rays if the occluder completely hides the
+// ball from a point, or hides no part of it. Otherwise the occluder is tested against all samples of a group at once.
+// All decisions agree with occlude.h.
 #ifndef GLINT_LIGHT_SOFT_H
 #define GLINT_LIGHT_SOFT_H
 
@@ -16,29 +16,29 @@
 
 /// The remaining tests of a group.
 typedef struct R(soft_group) {
-    unsigned near[GLINT_OCCLUDERS]; ///< lanes to test, for each occluder of the tile's list
-    unsigned any_near; ///< lanes that are near any occluder
-    unsigned hidden; ///< lanes that some occluder hides from the whole light
+    unsigned near[GLINT_OCCLUDERS]; ///< lanes to test against each occluder of the tile's list
+    unsigned any_near; ///< lanes to test against any occluder
+    unsigned hidden; ///< lanes from which some occluder completely hides the light
 } R(soft_group);
 
 /// The position of the whole light relative to an occluder of the tile's list, in the index's frame.
 typedef struct R(soft_occluder) {
-    float away; ///< from the occluder's centre to the light's
-    float slack; ///< bound of the rounding error of a distance
-    bool outside; ///< the whole light is outside
-    int side; ///< of a plane: 1, the whole light is in front; -1, behind; 0, neither
+    float away; ///< distance from the occluder's centre to the light's centre
+    float slack; ///< error bound of a distance
+    bool outside; ///< true: the whole light is outside the occluder
+    int side; ///< for a plane: 1: the whole light is in front of it; -1: behind it; 0: neither
 } R(soft_occluder);
 
 /// The whole light, and data that the groups of one call share in addition to the tile's.
 typedef struct R(whole_light) {
-    float middle[3], radius; ///< of the ball
-    double scale; ///< of the index's frame
+    float middle[3], radius; ///< middle and radius of the light's bounding ball
+    double scale; ///< scale of the index's frame
     R(soft_occluder) occluders[GLINT_OCCLUDERS];
     R(light_sample_set) light_samples;
-    bool cone; ///< samples are computed for each group, and hold for the current one
-    bool ready; ///< the fields for samples are set
+    bool cone; ///< true: samples are computed for each group, and are valid for the current group
+    bool ready; ///< true: the fields for samples are set
     R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
-    unsigned unoccluded[GLINT_LIGHT_CHUNK]; ///< of the current group
+    unsigned unoccluded[GLINT_LIGHT_CHUNK]; ///< for each sample, the unoccluded lanes of the current group
 } R(whole_light);
 
 /// Returns 1 if the light's box, in the index's frame, is in front of the plane, -1 if it is behind, 0 if neither is
@@ -92,10 +92,10 @@ static void R(place_soft_light)(const R(shadow_tile) * tile, R(whole_light) * li
     }
 }
 
-/// Lanes by the effect of an occluder.
+/// The lanes of a group, classified by the effect of an occluder.
 typedef struct R(soft_lanes) {
-    unsigned apart; ///< the occluder hides no part of the light from the point
-    unsigned hidden; ///< the occluder hides the whole light
+    unsigned apart; ///< lanes in which the occluder hides no part of the light
+    unsigned hidden; ///< lanes in which the occluder completely hides the light
 } R(soft_lanes);
 
 static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const glint_prim *plane, int side, size_t at)
@@ -112,17 +112,18 @@ static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const 
     return out;
 }
 
-/// Classifies an occluder by its bounding ball. The ball is apart from the point's cone around the light if a plane
-/// that touches the ball has both the point and the light on its other side. Three planes are tried: along the cone,
-/// perpendicular to the direction at the point, and at the light. A sphere hides the whole light if at some depth it
-/// contains the cone's full width.
+/// Classifies an occluder by its bounding ball. The ball is apart from the cone from the point around the light if a
+/// plane that touches the ball has both the point and the light on the other side. Three planes are tried: one along
+/// the side of the cone, and two perpendicular to the cone's axis, at the point and at the light. A sphere completely
+/// hides the light if it contains the cone's full width at some depth.
 static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const R(soft_occluder) * occluder,
                                             const glint_prim *prim, const float local[3][GLINT_GROUP])
 {
     R(soft_lanes) out = { 0, 0 };
     const vf radius = f_set(light->radius), bound = f_set(prim->filter_bound), slack = f_set(occluder->slack);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf to_light[3], e[3], off[3]; // from the point to the light; to the occluder; the perpendicular between both
+        vf to_light[3], e[3], off[3]; // vectors from the point to the light, from the point to the occluder, and the
+            // perpendicular between the two
         for (int k = 0; k < 3; k++) {
             const vf x = f_load(local[k] + i);
             to_light[k] = f_set(light->middle[k]) - x;
@@ -174,7 +175,8 @@ static R(soft_group)
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = lanes_equal(args->prim + group->at, id) & lanes;
-        unsigned near = own; // a point's own primitive only blocks from behind, except triangles and tori
+        unsigned near = own; // a point's own primitive only blocks points seen from behind, except for triangles and
+            // tori
         if (prim->kind == GLINT_PRIM_PLANE)
             near = 0;
         else if (prim->kind != GLINT_PRIM_TRIANGLE && !is_torus(args->geometry, prim))

@@ -1,6 +1,6 @@
-// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time. Points hidden
-// from the whole light are skipped, and sums stay in registers. The arithmetic is that of the single stages.
-// Contract: stages.h.
+// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time. Points from
+// which the light is completely hidden are skipped, and sums stay in registers. The arithmetic is the same as in the
+// single stages. Contract: stages.h.
 #ifndef GLINT_LIGHT_SOFT_LIGHT_H
 #define GLINT_LIGHT_SOFT_LIGHT_H
 
@@ -15,22 +15,24 @@
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/simd/real.h"
 
-#define SOFT_PARTS (VF / VR) // vectors of real per vector of float
-#define SOFT_PLAIN 0 // kinds of light that the sums are compiled for: neither attenuated nor directed
+#define SOFT_PARTS (VF / VR) // number of vectors of real per vector of float
+#define SOFT_PLAIN 0 // the sums are compiled for three kinds of light. This one is neither attenuated nor directed
 #define SOFT_PLACED 1
 #define SOFT_CONE 2 // each point has its own samples
 
 /// Material data of sixteen lanes, for highlights.
 typedef struct R(soft_gloss) {
-    unsigned phong, blinn, cosine; ///< lanes by the highlight and the lobe of their material
+    unsigned phong, blinn, cosine; ///< lanes whose material has a Phong highlight; a Blinn-Phong highlight; a lobe
+        ///< with the factor n.l
     _Alignas(64) float shininess[GLINT_GROUP];
-    _Alignas(64) float least[GLINT_GROUP]; ///< of (r.v)^2 or (n.h)^2: below it, shade gives no highlight
+    _Alignas(64) float least[GLINT_GROUP]; ///< lower limit of (r.v)^2 or (n.h)^2: below it, the highlight is 0 in
+        ///< shade
 } R(soft_gloss);
 
-/// VF lanes of a group, with the light of the samples so far.
+/// A vector of VF lanes of a group, with the sums of the samples' light so far.
 typedef struct R(soft_point) {
-    vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3]; ///< plain: the point in the light's units
-    vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< set if some lane is glossy
+    vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3]; ///< if `plain`, the point is in the light's units
+    vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< only set if some lane is glossy
     vf diffuse, specular;
     unsigned reached;
 } R(soft_point);
@@ -40,9 +42,9 @@ typedef struct R(soft_call) {
     const glint_soft_args *args;
     R(shadow_tile) tile;
     R(whole_light) light;
-    R(soft_gloss) gloss; ///< of the current group
-    bool plain; ///< the light is not attenuated, no sample is directed, and the next field is set
-    _Alignas(64) real scaled[GLINT_LIGHT_CHUNK][3][GLINT_GROUP]; ///< positions in the light's units
+    R(soft_gloss) gloss; ///< material data of the current group
+    bool plain; ///< true: the light is not attenuated, samples emit in all directions, and the next field is set
+    _Alignas(64) real scaled[GLINT_LIGHT_CHUNK][3][GLINT_GROUP]; ///< positions of the samples in the light's units
 } R(soft_call);
 
 INNER unsigned R(join_bits)(const rm mask[SOFT_PARTS])
@@ -88,7 +90,7 @@ INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr 
             num[j] = r_select(mask, blinn_num, num[j]);
             den[j] = r_select(mask, blinn_den, den[j]);
         }
-        // NaN, and lanes in which den overflows, are left to the division
+        // NaN, and lanes in which den overflows, stay, and the division handles them
         some[j] = rm_andnot(some[j], r_lt(num[j], R(load_wide)(gloss->least + i + j * VR) * den[j]));
     }
     if (!(R(join_bits)(some) & (phong | blinn)))
@@ -101,8 +103,8 @@ INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr 
     p->specular = p->specular + R(soft_highlight)(call, i, shiny, x, w, cosine);
 }
 
-/// Adds sample s to VF lanes from i on; `open`: the lanes that it may reach. Returns the lanes on the lit side of the
-/// sample, occluded or not.
+/// Adds sample s to VF lanes from i on; `open`: the lanes that the sample may reach. Returns the lanes on the lit
+/// side of the sample, including occluded ones.
 INNER unsigned R(add_sample)(const R(soft_call) * call, const int kind, const bool glossy, uint32_t s, int i,
                              unsigned open, R(soft_point) * p)
 {
@@ -179,8 +181,8 @@ static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned rest
     }
 }
 
-/// Adds all samples for VF lanes from i on. Their open lanes are in call->light; rays are counted for lanes of
-/// `near`. `kind` and `glossy` are constants.
+/// Adds all samples for VF lanes from i on. The lanes that each sample may reach are in call->light; rays are counted
+/// for lanes of `near`. `kind` and `glossy` are constants.
 INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool glossy, R(group_cursor) cursor, int i,
                           unsigned near, R(soft_point) * p)
 {
@@ -229,8 +231,8 @@ static void R(add_glossy)(const R(soft_call) * call, R(group_cursor) cursor, int
         R(add_samples)(call, SOFT_PLACED, true, cursor, i, near, p);
 }
 
-/// Processes one group; `open`: the lanes that are not hidden from the whole light; `near`: of these, the lanes that
-/// may be hidden from a part of it.
+/// Processes one group. open: the lanes from which the light is not completely hidden; near: the lanes of `open` from
+/// which a part of the light may be hidden.
 static void R(sum_group)(R(soft_call) * call, R(group_cursor) cursor, unsigned open, unsigned near)
 {
     const glint_soft_args *args = call->args;
@@ -286,7 +288,7 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
 }
 
 /// Scales the positions of the samples, so that the direction to a sample is one difference. The light's scale is a
-/// power of two, so the bits are the same, unless a number overflows or loses digits: then returns false.
+/// power of two, so the bits are the same, unless a number overflows or loses digits. In that case, returns false.
 static bool R(scale_light_samples)(R(soft_call) * call)
 {
     const glint_light_args *args = call->args->light;

@@ -1,6 +1,6 @@
-// soft_shadow: occlude for an area light: by a tile's list (soft.h), or by layers (layers.h). If no frame of layers
-// fits, if each point has its own samples, or if float decides: sample by sample, like a point light. Contract:
-// stages.h, occlude.
+// soft_shadow: the stage occlude for an area light, with a tile's list of occluders (soft.h) or with layers
+// (layers.h). It works sample by sample, as for a point light, if the points and samples allow no frame for layers,
+// if each point has its own samples, or if float decides. Contract: stages.h, occlude.
 #ifndef GLINT_LIGHT_SOFT_SHADOW_H
 #define GLINT_LIGHT_SOFT_SHADOW_H
 

@@ -1,5 +1,5 @@
-// beam: the points of a tile as their light sees them, on their own screen (screen.h). Segments from points to one
-// light are a bundle, like a camera's rays.
+// beam: the points of a tile projected onto a screen (screen.h) as seen from the light. The segments from the points
+// to one light form a bundle, like a camera's rays.
 #ifndef GLINT_OCCLUDE_BEAM_H
 #define GLINT_OCCLUDE_BEAM_H
 
@@ -7,10 +7,11 @@
 #include "engine/stages/index/screen.h"
 #include "engine/stages/simd/elementary.h"
 
-#define BEAM_DOWN SCREEN_DOWN ///< rows of cells
-#define BEAM_NEAREST 0.25f ///< smallest k of a point: closer to the light, a screen position is of little use
-#define BEAM_WIDEST 1.0f ///< largest tangent of the angle to the axis
-#define BEAM_BACK 0x80000000u ///< flag of a point's own surface: it is seen from behind
+#define BEAM_DOWN SCREEN_DOWN ///< maximum number of rows of cells
+#define BEAM_NEAREST 0.25f ///< smallest k of a point: a screen position of a point closer to the light is not
+    ///< accurate enough
+#define BEAM_WIDEST 1.0f ///< largest tangent of the angle between a segment and the axis
+#define BEAM_BACK 0x80000000u ///< flag next to the number of a point's primitive: the primitive is seen from behind
 
 /// Sets the frame's axes: `away` from the light, and the component of `along` perpendicular to it as the second axis.
 /// Both may have any length except 0.
@@ -59,8 +60,8 @@ static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *see
     return mask | edge_on;
 }
 
-/// The side from which a point must be seen for its own triangle to block it, as in `own` of the beam; any: float
-/// cannot tell on which side the light is.
+/// The side from which a point must be seen so that the point's own triangle blocks the light, as in `own` of the
+/// beam. any: the light's side is uncertain in float.
 typedef struct own_side {
     uint32_t id;
     uint32_t side;

@@ -1,5 +1,6 @@
-// beam_leaf: the triangles of a node against the points of a beam. As in cast/leaf.h, float selects pairs, which are
-// decided a vector at a time, with a different triangle in each lane. Contract: stages.h, occlude.
+// beam_leaf: tests the triangles of a node against the points of a beam. As in cast/leaf.h, a float test selects
+// pairs of triangle and point, which are then decided a vector at a time, with a different triangle in each lane.
+// Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_BEAM_LEAF_H
 #define GLINT_OCCLUDE_BEAM_LEAF_H
 
@@ -13,7 +14,7 @@
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/simd/real.h"
 
-/// Returns the maximum w of a cell's open points.
+/// Returns the maximum w of the unoccluded points of a cell.
 static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
 {
     const uint32_t end = beam->begin[cell + 1];
@@ -25,8 +26,9 @@ static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
     return f_max_all(far);
 }
 
-/// Closes those of the points from[0] .. from[15] that are in `blocked` and still open. If a closed point was the
-/// farthest of its cell, the cell's maximum is computed again, once for consecutive points of the same cell.
+/// Marks as blocked those of the points from[0] .. from[15] that are in `blocked` and still unoccluded. If such a
+/// point was the farthest of its cell, the cell's maximum is computed again, once for consecutive points of the same
+/// cell.
 static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigned blocked)
 {
     const uint32_t none = BEAM_DOWN * SCREEN_ACROSS;
@@ -51,7 +53,8 @@ static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigne
         far[stale] = R(farthest_in)(beam, stale);
 }
 
-/// Copies the point at `at` into lane n of these arrays. Triangles also need the ray that hit the point.
+/// Copies the point at index `at` into lane n of the output arrays. If the occluder is a triangle, also copies the
+/// ray that hit the point.
 static inline void R(copy_point)(const glint_occlude_args *args, uint32_t at, bool triangle, int n, real *const point[3],
                                  real *const direction[3], real *slack)
 {
@@ -92,7 +95,7 @@ static inline void R(load_beam_leaf)(const R(beam) * beam, unsigned mask, R(beam
 
 // ---- The decision ----
 
-/// Returns the pairs, of VR from number i on, whose triangle lies between point and light.
+/// Returns which of the VR pairs from number i on have their triangle between the point and the light.
 static unsigned R(pairs_blocked)(const R(beam) * beam, int i)
 {
     const R(beam_leaf) *leaf = &beam->leaf;
@@ -157,7 +160,7 @@ static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool o
         R(decide_beam_pairs)(beam);
 }
 
-/// Makes pairs of the points found and their triangles.
+/// Makes pairs from the recorded points and their triangles.
 static inline void R(pair_points)(R(beam) * beam)
 {
     for (int n = 0; n < beam->runs; n++) {
@@ -198,21 +201,21 @@ static void R(block_triangle)(R(beam) * beam, int slot)
     const screen_cells cells = leaf->cells[slot];
     if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, leaf->shown.near[slot], cells))
         return;
-    // the determinant is negative if the light is in front; seen from behind means the other side
+    // the determinant is negative if the light is in front; a point seen from behind is on the other side
     const own_side mine = { leaf->node->child[slot] & ~GLINT_NODE_PRIM,
                             leaf->shown.negative >> slot & 1 ? BEAM_BACK : 0, !(leaf->shown.certain >> slot & 1) };
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
-    const bool whole = end - first == SCREEN_ACROSS; // the cells of all rows are one run
+    const bool whole = end - first == SCREEN_ACROSS; // the cells of all rows are contiguous
     if (beam->runs > GLINT_BEAM_RUNS)
         R(pair_points)(beam);
     for (; top <= bottom; top = whole ? bottom + 1 : top + SCREEN_ACROSS)
         R(points_near_triangle)(beam, slot, mine, top[first], whole ? bottom[end] : top[end]);
 }
 
-/// Removes from args->unoccluded the points that the triangles in the slots of `mask` block. Points are found for all
-/// triangles before the first pair is made, without branches, as in groups.h.
+/// Removes from args->unoccluded the points that the triangles in the slots of `mask` block. The points for all
+/// triangles are selected before the first pair is made, without branches, as in groups.h.
 static void R(block_triangles)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
 {
     R(beam_leaf) *leaf = &beam->leaf;

@@ -1,5 +1,5 @@
-// beam_points: the points of a tile sorted by cells of their light's view (beam.h), so that an occluder is tested
-// against few of them.
+// beam_points: sorts the points of a tile into cells of the light's view (beam.h), so that each occluder is tested
+// against few points.
 #ifndef GLINT_OCCLUDE_BEAM_POINTS_H
 #define GLINT_OCCLUDE_BEAM_POINTS_H
 
@@ -11,56 +11,56 @@
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/simd/real.h"
 
-/// Points to be decided: one surface, and up to a group of points that need not be neighbours.
+/// One surface, and up to a group of points that are decided against it. The points need not be neighbours.
 typedef struct R(beam_batch) {
     glint_occlude_args args; ///< arguments of the call, with these points instead of the tile's
     _Alignas(64) real point[3][GLINT_GROUP];
     uint16_t back;
     uint16_t from[GLINT_GROUP]; ///< index in the beam
-    _Alignas(64) uint32_t on[GLINT_GROUP]; ///< the primitive of each
+    _Alignas(64) uint32_t on[GLINT_GROUP]; ///< the primitive that each point is on
     int count;
-    unsigned own; ///< lanes that are on the surface itself
+    unsigned own; ///< lanes whose point is on the surface itself
 } R(beam_batch);
 
 #define GLINT_BEAM_PAIRS (2 * GLINT_GROUP)
 
-#define GLINT_BEAM_RUNS 128 ///< if there are more, pairs are made before the next triangle
+#define GLINT_BEAM_RUNS 128 ///< if there are more runs, pairs are made before the next triangle
 
-/// Those of VF consecutive points in the beam that may have an occluder.
+/// The points, of VF consecutive points in the beam, that a primitive may block.
 typedef struct R(near_points) {
     uint16_t first, near;
-    uint16_t own, slot; ///< of a triangle: points that are on it, and its slot
+    uint16_t own, slot; ///< for a triangle: the points that are on it, and the slot of the triangle
 } R(near_points);
 
 /// The triangles of a node, and pairs of a triangle and a point that are to be decided.
 typedef struct R(beam_leaf) {
-    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of the triangle in each slot
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< the corners of the triangle in each slot
     _Alignas(64) real point[3][GLINT_BEAM_PAIRS], direction[3][GLINT_BEAM_PAIRS], slack[GLINT_BEAM_PAIRS];
     _Alignas(64) uint32_t slot[GLINT_BEAM_PAIRS];
     uint16_t from[GLINT_BEAM_PAIRS]; ///< index in the beam
-    unsigned own, back; ///< pairs whose point is on the triangle; whose point is seen from behind
+    unsigned own, back; ///< pairs whose point is on the triangle; pairs whose point is seen from behind
     int count;
     const glint_node *node;
     leaf_on_screen shown;
-    _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
+    _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< the cells of each triangle, in the format of screen_cells
 } R(beam_leaf);
 
 typedef struct R(beam) {
     const R(shadow_tile) * tile;
     screen_view view;
-    uint32_t count, unoccluded; ///< points; of these, the ones without an occluder so far
+    uint32_t count, unoccluded; ///< number of points, and number of points without an occluder so far
     // the points in the order of cells, row by row
     _Alignas(64) float uv[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
     _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< -inf for blocked points
-    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< the primitive that the point is on; with BEAM_BACK: seen from
-        ///< behind
+    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< the primitive that the point is on, with the flag BEAM_BACK
+        ///< if it is seen from behind
     uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
-    uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where the points of each cell begin
+    uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< index of the first point of each cell
     _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< maximum w of each cell's unoccluded points
     R(beam_batch) batch;
     R(beam_leaf) leaf;
-    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< found, and not yet paired with
-        ///< their occluders
+    R(near_points) run[GLINT_BEAM_RUNS + 1 + GLINT_TILE_SAMPLES / VF + BEAM_DOWN]; ///< points that a triangle may
+        ///< block and that are not yet paired with it
     int runs;
 } R(beam);
 
@@ -84,7 +84,7 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
             longest = k;
     }
     along[longest] = 1;
-    // points of a tile lie behind each other as the camera sees them
+    // uses the camera's direction, along which the points of a tile lie behind each other
     const bool seen = args->camera && make_beam_axes(away, args->camera->forward, view);
     for (int next = 0; !seen && !make_beam_axes(away, along, view); next++) {
         if (next == 3)
@@ -98,9 +98,10 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
     view->count[1] = BEAM_DOWN;
     view->margin = 0;
     view->slack = 4 * GLINT_FILTER_SLACK * (float)size + 2 * R(walk_slack)(geometry);
-    // bound of the distance of a point from its triangle's plane, and more
+    // at least the distance of a point from its triangle's plane
     view->corner_slack = (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
-    view->drift = 2 * GLINT_FILTER_SLACK * (float)width + 4 * view->corner_slack; // k of a point is above BEAM_NEAREST
+    view->drift = 2 * GLINT_FILTER_SLACK * (float)width + 4 * view->corner_slack; // this suffices because k of a
+        // point is above BEAM_NEAREST
     return true;
 }
 
@@ -117,13 +118,14 @@ static inline void R(points_from)(const void *const point[3], size_t at, const g
     }
 }
 
-/// The points as the light sees them, in the order of the call's groups.
+/// The projected positions of the points in the light's view, in the order of the call's groups.
 typedef struct R(beam_coords) {
     _Alignas(64) float uv[2][GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t cell[GLINT_TILE_SAMPLES];
 } R(beam_coords);
 
-/// Projects the points and bounds their positions. Returns whether a beam fits them; with NaN, it does not.
+/// Projects the points and computes bounds of their positions. Returns whether these points can form a beam; they
+/// cannot if there is a NaN.
 static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, screen_view *view,
                               R(beam_coords) * coords)
 {

@@ -1,7 +1,8 @@
-// blocked: decides whether a surface is between a point and a light. Float settles the certain cases of spheres, and
-// finds the solids that are near. The rest is decided from the point towards the light, for spheres without a root or
-// a division: the segment crosses a sphere if one end is inside and the other outside, or if both are outside, the
-// foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
+// blocked: decides whether a surface is between a point and a light. A float test decides the certain cases of
+// spheres, and selects solids near the segment. The other cases are decided along the segment from the point to the
+// light. For spheres this needs no root and no division: the segment crosses a sphere if one end is inside and the
+// other outside, or if both are outside, the foot of the perpendicular lies between them and the discriminant is not
+// negative. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_BLOCKED_H
 #define GLINT_OCCLUDE_BLOCKED_H
 
@@ -17,12 +18,14 @@
 #define GLINT_OCCLUDERS 32 ///< capacity of a tile's list; GLINT_OCCLUDERS_FEW for area lights, for triangles, and if
     ///< float decides
 #define GLINT_OCCLUDERS_FEW 12
-#define FAR_LIGHT 0x1p60 ///< in the index's units; from there on squares of the distance may overflow float
-#define GLINT_SHAFTS_TRIED 3 ///< failed shafts of consecutive groups after which the tile tries no more
-#define GLINT_SHAFT_NODES 16 ///< nodes that a group's shaft may visit before each lane is traversed separately
+#define FAR_LIGHT 0x1p60 ///< in the index's units; at larger distances, squares of the distance may overflow float
+#define GLINT_SHAFTS_TRIED 3 ///< after this number of consecutive groups whose shaft failed, the tile tries no more
+    ///< shafts
+#define GLINT_SHAFT_NODES 16 ///< maximum number of nodes that a group's shaft visits; then each lane traverses the
+    ///< index separately
 
-/// The position of the light relative to a primitive, one bit per lane: outside or in front, inside or behind;
-/// neither if on it.
+/// The position of the light relative to a primitive, one bit per lane: outside (or in front), inside (or behind). A
+/// light on the surface has neither bit.
 typedef struct R(light_sides) {
     uint16_t outside, inside;
 } R(light_sides);
@@ -37,23 +40,26 @@ typedef struct R(occluder) {
 typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
     light_bounds light; ///< the whole light if it is an area light
-    _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its current sample, for each lane
-    _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
-    bool far; ///< local_light, or numbers computed from it, may overflow
+    _Alignas(64) real position[3][GLINT_GROUP]; ///< position of the light, or of the light's current sample, for each
+        ///< lane
+    _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same position in the index's frame
+    bool far; ///< true: local_light, or numbers computed from it, may overflow
     R(occluder) occluders[GLINT_OCCLUDERS];
-    int count, unbounded; ///< of these, first, the unbounded ones; more than GLINT_OCCLUDERS: too many for a list
+    int count, unbounded; ///< number of occluders, and of the unbounded ones, which come first; count above
+        ///< GLINT_OCCLUDERS: too many for a list
     float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
 } R(shadow_tile);
 
-/// A group's shadow rays, made when one is needed.
+/// A group's shadow rays, made when a test needs them.
 typedef struct R(shadow_group) {
     size_t at;
     bool placed, made;
-    _Alignas(64) float local[3][GLINT_GROUP]; ///< if placed: the points in the index's frame
-    uint32_t last_blocker; ///< in the groups so far, or GLINT_MISS
-    int shafts_failed; ///< in the last groups in a row
-    R(ray_group) rays; ///< if made: in the index's units; --precision float: in the light's
-    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< of their directions, if there are solids
+    _Alignas(64) float local[3][GLINT_GROUP]; ///< only set if `placed`: the points in the index's frame
+    uint32_t last_blocker; ///< the last primitive that blocked a point in the groups so far, or GLINT_MISS
+    int shafts_failed; ///< number of consecutive groups, up to the last one, whose shaft failed
+    R(ray_group) rays; ///< only set if `made`: the rays in the index's units; --precision float: in the light's units
+    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< one over the components of the rays' directions, if there are
+        ///< solids
 } R(shadow_group);
 
 /// Returns 1 if the light is outside or in front of the primitive, -1 if inside or behind, 0 if on it.
@@ -71,7 +77,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     } else {
         for (int k = 0; k < 3; k++)
             f[k] *= glint_sphere_scale(prim);
-        const double length2 = DOT(f, f); // with an error of a few roundings
+        const double length2 = DOT(f, f); // its error is a few roundings
         if (args->directional || !(length2 < glint_sphere_r2(prim) * (1 + 1e-12)))
             return 1;
         if (length2 < glint_sphere_r2(prim) * (1 - 1e-12))
@@ -84,7 +90,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     return (height > 0) - (height < 0);
 }
 
-/// Returns the sides of the light. `target`: of the sample; NULL if it is not an area light.
+/// Returns the sides of the light. `target`: positions of the sample; NULL if the light is not an area light.
 static inline R(light_sides)
     R(sides_of)(const glint_occlude_args *args, const double (*target)[GLINT_GROUP], const glint_prim *prim)
 {
@@ -101,7 +107,7 @@ static inline R(light_sides)
     return sides;
 }
 
-/// Aims the tile at its light (NULL), or at one sample of it.
+/// Aims the tile's segments at the light (target NULL), or at one sample of the light.
 static inline void R(aim_at)(R(shadow_tile) * tile, const double (*target)[GLINT_GROUP])
 {
     const glint_occlude_args *args = tile->args;
@@ -148,8 +154,8 @@ static inline void R(place_group)(const R(shadow_tile) * tile, R(shadow_group) *
     group->placed = true;
 }
 
-/// Computes directions in the light's units: for a far light, a part of the distance only; and if float decides,
-/// because the filter must use the same numbers as the decision.
+/// Computes directions in the light's units: they are used for a far light, where they cover only a part of the
+/// distance, and if float decides, because the filter must use the same numbers as the decision.
 static inline void R(aim_in_units)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     _Alignas(64) real to_light[3][GLINT_GROUP];
@@ -163,8 +169,9 @@ static inline void R(aim_in_units)(const R(shadow_tile) * tile, R(shadow_group) 
         R(narrow)(to_light[k], group->rays.direction[k]);
 }
 
-/// Computes directions as differences of both ends in float. Their error grows with the distance of a primitive along
-/// the segment, and is within GLINT_FILTER_SLACK of its centre and the point.
+/// Computes directions as differences of both ends in float. The error of a direction grows with the distance along
+/// the segment. At a primitive it is at most GLINT_FILTER_SLACK times the lengths of the primitive's centre and the
+/// point.
 static inline void R(aim_in_index)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     for (int k = 0; k < 3; k++)
@@ -212,7 +219,7 @@ static inline rm R(sphere_blocks)(const glint_occlude_args *args, const R(ball) 
     return R(either)(rm_from_bits(inside), from_outside, blocked);
 }
 
-/// Tests a plane. h: the points' heights over it.
+/// Tests a plane. h: the heights of the points over the plane.
 static inline rm R(plane_blocks)(unsigned outside, unsigned inside, vr h)
 {
     return rm_or(rm_and(rm_from_bits(outside), r_lt(h, r_set(0))), rm_and(rm_from_bits(inside), r_lt(r_set(0), h)));
@@ -255,8 +262,8 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
     return blocked;
 }
 
-/// Returns the lanes of `wanted` that a torus blocks, including lanes `own`, whose points are on it. outside: where
-/// the light is.
+/// Returns the lanes of `wanted` that a torus blocks, including the lanes `own`, whose points are on the torus.
+/// outside: lanes in which the light is outside.
 static unsigned R(blocked_by_torus)(const glint_occlude_args *args, const glint_prim *prim,
                                     const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
                                     unsigned outside)
@@ -288,8 +295,8 @@ static unsigned R(blocked_by_torus)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
-/// Returns the lanes of `wanted` that a solid blocks; `own`: lanes whose points are on it. outside: where the light
-/// is.
+/// Returns the lanes of `wanted` that a solid blocks. own: lanes whose points are on the solid. outside: lanes in
+/// which the light is outside.
 static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_prim *prim,
                                     const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
                                     unsigned outside)
@@ -314,21 +321,21 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
-/// Returns the lanes of a group that are on parts of a combined solid.
+/// Returns the lanes of a group whose points are on parts of a combined solid.
 static inline unsigned R(lanes_on_parts)(const glint_occlude_args *args, const glint_combined *whole, size_t at)
 {
     const uint32_t first = args->geometry->prim_count + whole->first;
     return lanes_below(args->prim + at, first + whole->count) & ~lanes_below(args->prim + at, first);
 }
 
-/// Returns `wanted` without the lanes whose segments leave a combined solid: those that go out of a part that
+/// Returns `wanted` without the lanes whose segments leave a combined solid: the segments that leave a part which
 /// contains the whole solid.
 static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned wanted)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
     const uint32_t first = args->geometry->prim_count + whole->first;
     if (!R(lanes_on_parts)(args, whole, at))
-        return wanted; // no lane is on a part, which saves loading them
+        return wanted; // no lane is on a part, so the parts need not be loaded
     const unsigned back = args->back[at / GLINT_GROUP];
     for (uint64_t bits = whole->all & whole->needs; bits && wanted; bits &= bits - 1) {
         const uint32_t index = first + (uint32_t)__builtin_ctzll(bits);
@@ -366,8 +373,8 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
     return blocked;
 }
 
-/// Returns which of VR segments, from lane i of the group at `at` along d, a sphere or a plane blocks, one bit each.
-/// No point is on the primitive.
+/// Returns which of VR segments along d, from lane i of the group at `at` on, a sphere or a plane blocks, one bit
+/// each. No point is on the primitive.
 static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const glint_prim *prim, const R(ball) *ball,
                                         R(light_sides) sides, size_t at, int i, const vr d[3])
 {
@@ -387,11 +394,12 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
 /// Lanes of a group after the float test of their segments against a sphere.
 typedef struct R(sphere_lanes) {
     unsigned near; ///< the sphere may block them
-    unsigned within; ///< of these, some point of the segment is certainly inside
+    unsigned within; ///< lanes of `near` whose segment certainly passes through the inside
 } R(sphere_lanes);
 
-/// Classifies a sphere. It is away from a segment if the segment's line misses it, or if it is behind a point that is
-/// outside of it. For certain hits, its radius is reduced by as much as the filter enlarges it.
+/// Classifies a sphere. The sphere is not near a segment if the segment's line misses it, or if it is behind the
+/// segment's start and does not contain it. For certain hits, the radius is reduced by as much as the filter enlarges
+/// it.
 static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ray_group) * rays, const glint_prim *prim)
 {
 #if GLINT_REAL == 64
@@ -473,7 +481,8 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
     wanted &= ~own;
     R(sphere_lanes) sorted = { 0xffff, 0 };
-    if (wanted && sphere && occluder.sides.inside != 0xffff) { // if the light is inside, being outside is enough
+    if (wanted && sphere && occluder.sides.inside != 0xffff) { // if the light is inside, the sphere blocks every
+        // point outside
         if (!group->made)
             R(make_shadow_rays)(tile, group);
         sorted = R(sort_by_sphere)(tile, &group->rays, prim);

@@ -1,7 +1,8 @@
-// grid: points of a tile against the occluders in the cells of their light's view (glint_light_grid). Points of a
-// group that share a cell are tested together, one entry after the other. Each of the other points searches its cell
-// for entries that may block it, nearest to the light first. The pairs found are decided a vector at a time, with a
-// different sphere in each lane, until every point is blocked or has no entry left. Contract: stages.h, occlude.
+// grid: tests points of a tile against the occluders in the cells of the light's view (glint_light_grid). If many
+// points of a group share a cell, they are tested together, one entry after the other. Each other point searches its
+// cell for entries that may block it, nearest to the light first. These pairs of point and entry are decided a vector
+// at a time, with a different sphere in each lane, until every point is blocked or has no entry left. Contract:
+// stages.h, occlude.
 #ifndef GLINT_OCCLUDE_GRID_H
 #define GLINT_OCCLUDE_GRID_H
 
@@ -14,21 +15,24 @@
 
 #if GLINT_REAL == 64
 
-#define GRID_FAR 0x1p20 // directional light, in the index's units: from farther away, projection is not exact enough
+#define GRID_FAR 0x1p20 // for directional lights, in the index's units: the projection of points beyond this distance
+    // is not accurate enough
 #define GRID_REACH (GLINT_GRID_RADIUS * GLINT_GRID_RADIUS * (1 + 0x1p-20f)) // steps^2 per unit radius^2, plus rounding
-#define GRID_BIAS 0x1p23f // integers below this are the lower bits of floats from this on
+#define GRID_BIAS 0x1p23f // an integer n below 2^23 is the lower bits of the float GRID_BIAS + n
 
 /// Points that may be blocked, and their state.
 typedef struct grid_points {
     uint32_t count, live_count;
     uint16_t live[GLINT_TILE_SAMPLES]; ///< points that are not decided yet
-    float uv[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< in the format of entries, plus GRID_BIAS
+    float uv[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< positions and depths in the format of entries,
+        ///< plus GRID_BIAS
     float reach[GLINT_TILE_SAMPLES]; ///< factor of the square of an entry's radius
-    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< entries of its cell that remain
+    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< the entries of the point's cell that remain to be
+        ///< tested
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
 } grid_points;
 
-#define GRID_TOGETHER 12 // points of a group in one cell from which on they are tested together
+#define GRID_TOGETHER 12 // from this number on, the points of a group in one cell are tested together
 
 /// Points of a group that share a cell.
 typedef struct grid_run {
@@ -49,7 +53,7 @@ typedef struct grid_pairs {
 typedef struct grid_coords {
     _Alignas(64) float uv[2][GLINT_GROUP], w[GLINT_GROUP], reach[GLINT_GROUP];
     _Alignas(64) uint32_t cell[GLINT_GROUP];
-    unsigned known; ///< lanes whose numbers are defined
+    unsigned known; ///< lanes whose positions are defined
 } grid_coords;
 
 /// The tile's projected positions and runs.
@@ -87,8 +91,8 @@ static void grid_lane_coords(const glint_occlude_args *args, size_t at, int i, g
 /// Returns integers below GRID_BIAS plus GRID_BIAS, as floats.
 static inline vf grid_biased(vi x) { return f_from_bits(i_or(x, i_set(0x4b000000))); }
 
-/// Computes the cells of a group, and the projected positions in the format of entries. Returns the lanes that are in
-/// a cell, and behind the nearest of all entries.
+/// Computes the cells of a group's points, and the projected positions in the format of entries. Returns the lanes
+/// that are in a cell and farther from the light than the nearest of all entries.
 static unsigned grid_cells(const glint_light_grid *grid, grid_coords *coords)
 {
     const vf bias = f_set(GRID_BIAS), aside = f_set((float)(GLINT_GRID_ASIDE * GLINT_GRID_STEPS) + GRID_BIAS);
@@ -105,14 +109,15 @@ static unsigned grid_cells(const glint_light_grid *grid, grid_coords *coords)
         }
         f_store(coords->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
         f_store(coords->reach + i, f_load(coords->reach + i) * f_set(GRID_REACH));
-        i_store(coords->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // row and column
+        i_store(coords->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // row in the upper half, column in the lower
+            // half
         inside |= fm_bits(in) << i;
     }
     return inside;
 }
 
-/// Returns the lanes of `back`, seen from behind, that are on a sphere in a cell: the light is outside of the sphere,
-/// so it blocks them.
+/// Returns the lanes of `back`, which are seen from behind, that are on a sphere in a cell. The light is outside of
+/// the sphere, so the sphere blocks the light.
 static unsigned grid_own(const glint_occlude_args *args, size_t at, unsigned back)
 {
     const glint_light_grid *grid = args->grid;
@@ -143,7 +148,7 @@ static grid_run grid_look_up(const glint_light_grid *grid, const grid_coords *co
     return run;
 }
 
-/// Adds lanes of a group one by one.
+/// Adds lanes of a group as single points.
 static void grid_add_points(const glint_light_grid *grid, const grid_coords *coords, uint32_t g, unsigned lanes,
                             grid_points *points)
 {
@@ -201,14 +206,14 @@ static inline vi grid_load(const uint32_t *p) { return f_bits(f_load_any((const 
 /// Returns an entry's position along an axis, in the format of points: the lower 16 bits.
 static inline vf grid_step(vi center) { return grid_biased(i_and(center, i_set(0xffff))); }
 
-/// Returns whether squared distances in steps are within an entry's reach.
+/// Returns the lanes in which the distance in steps, (du, dv), is within an entry's reach.
 static inline fm grid_within(vi size, vf du, vf dv, vf reach)
 {
     const vf radius = grid_biased(i_and(size, i_set((1u << GLINT_GRID_RADIUS_BITS) - 1))) - f_set(GRID_BIAS);
     return f_le(du * du + dv * dv, radius * radius * reach);
 }
 
-/// Returns whether an entry may block a point at this w, by depth.
+/// Returns the lanes in which an entry is near enough to the light to block a point at depth w.
 static inline fm grid_before(vi size, vf w) { return f_le(grid_biased(i_shr(size, GLINT_GRID_RADIUS_BITS)), w); }
 
 /// Returns the next entry that may block point k, whose own primitive is `own`; GLINT_MISS: none.
@@ -226,7 +231,7 @@ static uint32_t grid_next(const glint_light_grid *grid, const grid_points *point
         for (; near; near &= near - 1)
             if (grid->id[from + (unsigned)__builtin_ctz(near)] != own)
                 return from + (unsigned)__builtin_ctz(near);
-        if (grid->sorted && before != there) // the entries that follow are behind the point
+        if (grid->sorted && before != there) // the remaining entries are behind the point
             break;
     }
     return GLINT_MISS;
@@ -253,12 +258,12 @@ static void grid_pair(const glint_occlude_args *args, grid_points *points, grid_
 
 // ---- The decision ----
 
-/// VD pairs, as the decision reads them.
+/// The data of VD pairs, in the format in which the decision reads it.
 typedef struct grid_lanes {
     _Alignas(64) double center[3][VD], scale[VD], r2[VD], r2_low[VD], point[3][VD];
 } grid_lanes;
 
-/// Returns the lanes whose sphere blocks the light, which is outside of it. Like sphere_blocks.
+/// Returns the lanes whose sphere blocks the light. The light is outside of the sphere. Otherwise like sphere_blocks.
 static unsigned grid_blocked(const glint_occlude_args *args, const grid_lanes *lanes)
 {
     const vd zero = d_set(0), scale = d_load(lanes->scale), r2 = d_load(lanes->r2);
@@ -277,7 +282,8 @@ static unsigned grid_blocked(const glint_occlude_args *args, const grid_lanes *l
     return dm_bits(dm_or(d_lt(c, zero), blocked));
 }
 
-/// Decides all pairs. Blocked points are closed; the other points of the pairs stay undecided.
+/// Decides all pairs. Blocked points are removed from the undecided points; the other points of the pairs stay
+/// undecided.
 static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs, grid_points *points)
 {
     grid_lanes lanes;
@@ -311,7 +317,7 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
 
 /// Bounds of a run's projected positions.
 typedef struct grid_bounds {
-    vf least[2], most[2], w, reach; ///< the same number in all lanes
+    vf least[2], most[2], w, reach; ///< each of these has the same number in all lanes
 } grid_bounds;
 
 static inline grid_bounds grid_bound(const grid_coords *coords, unsigned lanes)
@@ -328,7 +334,7 @@ static inline grid_bounds grid_bound(const grid_coords *coords, unsigned lanes)
     return (grid_bounds) { { least[0], least[1] }, { most[0], most[1] }, most[2], most[3] };
 }
 
-/// Returns the distance in steps from a position to the interval of bounds.
+/// Returns the distance in steps from a position to the interval from `least` to `most`.
 static inline vf grid_distance(vf center, vf least, vf most)
 {
     return f_max(f_max(least - center, center - most), f_set(0));
@@ -381,7 +387,7 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_coords *coords
              near &= near - 1)
             unoccluded &= ~grid_entry_blocks(tile, coords, (size_t)run->group * GLINT_GROUP,
                                              from + (unsigned)__builtin_ctz(near), unoccluded);
-        if (grid->sorted && before != there) // the entries that follow are behind the points
+        if (grid->sorted && before != there) // the remaining entries are behind the points
             break;
     }
     tile->args->unoccluded[0][run->group] &= (uint16_t)~(run->lanes & ~unoccluded);
@@ -389,7 +395,7 @@ static void grid_test_run(const shadow_tile_f64 *tile, const grid_coords *coords
 
 // ---- All ----
 
-/// Removes from args->unoccluded the points that primitives outside of all cells block.
+/// Removes from args->unoccluded the points that are blocked by primitives that are in no cell.
 static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;
@@ -407,8 +413,8 @@ static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
     }
 }
 
-/// Removes from args->unoccluded the points that the index's primitives block. Returns false if some projected position
-/// is unknown; then the work is not complete.
+/// Removes from args->unoccluded the points that the index's primitives block. Returns false if some projected
+/// position is unknown; the result is then incomplete.
 static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 {
     const glint_occlude_args *args = tile->args;
@@ -432,8 +438,8 @@ static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
 
 #endif
 
-/// Returns whether there is a grid and it has done the work. If float decides, the grid cannot be used: its entries
-/// are not those that float would hit.
+/// Computes the occlusion with the grid. Returns false if there is no grid or the grid cannot be used. It is never
+/// used if float decides, because its entries may differ from the spheres that float would hit.
 static inline bool R(occlude_by_grid)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
 #if GLINT_REAL == 64

@@ -1,7 +1,7 @@
-// near: the occluders of a tile's list that may be between the points of a group and the light, a vector of occluders
-// at a time. All segments of the group are within `reach` of the segment of one of its points: they start that close
-// to it, and end in one point or are parallel. Float, and conservative: the primitives left out block nothing.
-// Contract: stages.h, occlude.
+// near: selects the occluders of a tile's list that may be between the points of a group and the light, a vector of
+// occluders at a time. All segments of the group are within `reach` of the segment of one point of the group: their
+// starts are that close to the point, and the segments end in one point or are parallel. The test is in float and
+// conservative: the primitives that it leaves out block nothing. Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_NEAR_H
 #define GLINT_OCCLUDE_NEAR_H
 
@@ -11,14 +11,14 @@
 #include "engine/stages/simd/real.h"
 
 #define NEAR_MIDDLE 0x0660u ///< the lanes in the middle of a group
-#define NEAR_LEAST 2 ///< occluders: fewer are tested faster directly
-#define NEAR_MOST 0x1p80f ///< squared reach beyond which nothing is decided
+#define NEAR_LEAST 2 ///< with fewer occluders than this, testing all of them directly is faster
+#define NEAR_MOST 0x1p80f ///< if the squared reach is above this, no occluder is left out
 
 /// A list's occluders as bounding balls in the index's frame, one per lane.
 typedef struct R(near_list) {
     _Alignas(64) float center[3][GLINT_OCCLUDERS], bound[GLINT_OCCLUDERS];
     _Alignas(64) uint32_t id[GLINT_OCCLUDERS];
-    unsigned spheres; ///< lanes
+    unsigned spheres; ///< lanes that hold spheres
 } R(near_list);
 
 static void R(list_balls)(const R(shadow_tile) * tile, R(near_list) * list)
@@ -48,7 +48,8 @@ static inline unsigned R(lanes_of)(const R(shadow_tile) * tile, const R(near_lis
     return lanes & R(all_occluders)(tile);
 }
 
-/// Returns the maximum distance of `lanes` from one point of a group, rounded up; infinite if float overflows.
+/// Returns the maximum distance between the points of `lanes` and one point of the group, rounded up; infinite if
+/// float overflows.
 static inline float R(reach_of_group)(const R(shadow_group) * group, const float from[3], unsigned lanes)
 {
     vf most = f_set(0);
@@ -82,8 +83,8 @@ static inline unsigned R(balls_near)(const R(shadow_tile) * tile, const R(near_l
     return near & R(all_occluders)(tile);
 }
 
-/// Returns the occluders, one bit each, that `lanes` of a group are tested against. A sphere that all lanes are on,
-/// seen from outside, is not among them.
+/// Returns the occluders, one bit each, that `lanes` of a group are tested against. A sphere is left out if all lanes
+/// are on its outside.
 static unsigned R(near_occluders)(const R(shadow_tile) * tile, const R(near_list) * list, R(shadow_group) * group,
                                   unsigned lanes)
 {

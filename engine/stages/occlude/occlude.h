@@ -1,6 +1,6 @@
 // occlude: which points a light reaches. Contract: stages.h.
 //
-// A tile's segments are a bundle seen from the light, for which the index is traversed once. If there are too many
+// The segments of a tile form a bundle seen from the light, which traverses the index once. If there are too many
 // occluders, each group traverses the index with its own, thinner shaft.
 #ifndef GLINT_OCCLUDE_OCCLUDE_H
 #define GLINT_OCCLUDE_OCCLUDE_H
@@ -12,8 +12,8 @@
 #include "engine/stages/simd/real.h"
 #include "engine/stages/surface/surface.h"
 
-/// Returns whether a plane that touches the sphere has the whole shaft on its other side: then the sphere blocks
-/// nothing.
+/// Returns whether some plane that touches the sphere separates the sphere from the whole shaft, so that the sphere
+/// blocks nothing.
 static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
                             const light_bounds *light)
 {
@@ -33,7 +33,7 @@ static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const 
         along = smaller(along, 1);
     for (int k = 0; k < 3; k++)
         e[k] += along * segment[k];
-    // e: from the centre to the nearest point of the middle segment
+    // e: vector from the sphere's centre to the nearest point of the shaft's middle segment
     float size = 0, at_points = 0, at_light = 0;
     for (int k = 0; k < 3; k++) {
         size += (fabsf(middle[k]) + fabsf(prim->filter_center[k])) + fabsf(end[k]);
@@ -57,7 +57,7 @@ static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
         return false;
     }
     tile->occluders[tile->count].id = id;
-    if (!args->light_sample[0]) // for samples, the sides are computed for each one
+    if (!args->light_sample[0]) // for an area light, the sides are computed for each sample
         tile->occluders[tile->count].sides = R(sides_of)(args, NULL, &args->geometry->prims[id]);
     tile->count++;
     return true;
@@ -92,7 +92,7 @@ static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
     }
 }
 
-/// Returns whether the whole light is certainly outside the sphere or solid, by the filter's data.
+/// Returns whether the filter's data show that the whole light is certainly outside the sphere or solid.
 static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_prim *prim)
 {
     const bool ball = prim->kind == GLINT_PRIM_SPHERE || prim->kind == GLINT_PRIM_SOLID;
@@ -130,7 +130,7 @@ static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const doubl
     return unoccluded & ~blocked;
 }
 
-/// The box of a group's lanes, loosened.
+/// Computes the bounding box of a group's lanes, enlarged by rounding errors.
 static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * group, unsigned lanes, float lower[3],
                                 float upper[3])
 {
@@ -144,8 +144,8 @@ static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * g
     loosen(lower, upper, R(walk_slack)(tile->args->geometry));
 }
 
-/// Traverses the index with the shaft of a group. Gives up if there are many nodes to visit; *done: whether it did
-/// not.
+/// Traverses the index with the shaft of a group. Gives up if there are too many nodes to visit; *done: whether the
+/// traversal is complete.
 static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
                               unsigned unoccluded, bool *done)
 {
@@ -175,7 +175,8 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*target
     return unoccluded;
 }
 
-/// Traverses the index with the segment of one lane. The primitives found are tested against all unoccluded lanes.
+/// Traverses the index with the segment of one lane. The primitives that the traversal reaches are tested against all
+/// unoccluded lanes.
 static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
                              int lane, unsigned unoccluded)
 {
@@ -188,7 +189,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)
         ray.origin[k] = group->local[k][lane];
         const float light = tile->local_light[k][lane];
         ray.inverse[k] = 1 / (tile->args->directional ? light : light - group->local[k][lane]);
-        // the light's rounding error: as if the box were larger by that
+        // accounts for the light's rounding error by enlarging the boxes
         ray.slack = larger(ray.slack, WALK_SLACK * fabsf(light));
     }
     stack[height++] = 0;
@@ -225,7 +226,7 @@ static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*target
 {
     bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
-    if (group->last_blocker != GLINT_MISS) // it often blocks the next group, too
+    if (group->last_blocker != GLINT_MISS) // a primitive that blocked the last group often blocks this one, too
         unoccluded = R(test_occluder)(tile, target, group, group->last_blocker, unoccluded);
     if (unoccluded && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
         unoccluded = R(walk_shaft)(tile, target, group, unoccluded, &done);
@@ -272,7 +273,7 @@ static void R(box_of_points)(const glint_occlude_args *args, const uint16_t *lit
     out->only = GLINT_MISS;
 }
 
-/// Prepares a tile. lit: of the light or of any of its samples, for each group.
+/// Prepares a tile. lit: for each group, the lanes lit by the light or by any of its samples.
 static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit, R(shadow_tile) * tile)
 {
     const glint_geometry_table *geometry = args->geometry;

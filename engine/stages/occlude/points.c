@@ -1,4 +1,4 @@
-// The points that a light reaches.
+// Computes the points that a light reaches.
 #include "engine/stages/light/soft_shadow.h"
 
 #if GLINT_WITH_SHADOW

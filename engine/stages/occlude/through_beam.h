@@ -17,7 +17,8 @@
 
 // ---- The decision ----
 
-/// Returns the lanes of `wanted` that a primitive blocks from the light at `position`, which is on these sides of it.
+/// Returns the lanes of `wanted` that a primitive blocks from the light at `position`. sides: the side of the
+/// primitive that the light is on.
 static unsigned R(batch_blocked)(const R(beam_batch) * batch, const glint_prim *prim, const real position[3][GLINT_GROUP],
                                  R(light_sides) sides, unsigned wanted)
 {
@@ -74,14 +75,14 @@ static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint3
 typedef struct R(beam_blocker) {
     const glint_prim *prim;
     uint32_t id;
-    float near; ///< smallest w of its box
+    float near; ///< smallest w of the box of the primitive
     bool torus;
     shape_on_screen shape;
     rod_on_screen rod;
 } R(beam_blocker);
 
-/// Finds the points from `i` up to, not including, `end` that the primitive may block. It only blocks points on
-/// itself that are seen from behind, see blocked.h.
+/// Finds the points from `i` up to, not including, `end` that the primitive may block. Of the points on the primitive
+/// itself, it only blocks points seen from behind, see blocked.h.
 INNER void R(points_near)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
 {
     int n = beam->runs;
@@ -182,12 +183,12 @@ static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch
     batch->args.prim = batch->on;
     for (int k = 0; k < 3; k++)
         batch->args.point[k] = batch->point[k];
-    memset(batch->point, 0, sizeof batch->point); // lanes without a point are computed, too
+    memset(batch->point, 0, sizeof batch->point); // the kernels also compute lanes without a point
     memset(batch->on, 0xff, sizeof batch->on);
 }
 
-/// Removes from args->unoccluded the points that the index's primitives block. Returns false, with nothing changed, if
-/// no beam fits these points.
+/// Removes from args->unoccluded the points that the index's primitives block. Returns false, with nothing changed,
+/// if these points cannot form a beam.
 static bool R(occlude_beam)(const R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;

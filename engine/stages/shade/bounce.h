@@ -1,4 +1,4 @@
-// bounce: directions of reflected rays, and of rays refracted by Snell's law. Contract: stages.h.
+// bounce: the directions of reflected rays and of refracted rays, by Snell's law. Contract: stages.h.
 #ifndef GLINT_SHADE_BOUNCE_H
 #define GLINT_SHADE_BOUNCE_H
 

@@ -7,7 +7,7 @@
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Stores the factors of a light whose samples have been summed up.
+/// Stores the factors of a light whose samples are already summed up.
 static inline void put_sums(const glint_shade_light *light, bool specular, size_t at, float diffuse[GLINT_GROUP],
                             float highlight[GLINT_GROUP])
 {
@@ -43,7 +43,7 @@ INNER void add_factors(const glint_shade_args *args, const glint_shade_material 
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool power = specular && material->lobe == GLINT_LOBE_POWER;
-    bool begun = false; // the next lights may be joined to the last one of the list
+    bool begun = false; // true: the next lights may be joined to the last light of the list
     for (uint32_t k = 0; k < args->light_count; k++) {
         const glint_shade_light *light = &args->lights[k];
         begun = begun && light->joined;
@@ -81,7 +81,8 @@ INNER void find_factors(const glint_shade_args *args, const glint_shade_material
         add_factors(args, material, NULL, specular, g, factors);
 }
 
-/// Returns the product of a material's and a light's colour, limited to finite numbers, so that 0 times it is 0.
+/// Returns the product of a material's reflectance and a light's colour, limited to finite numbers, so that 0 times
+/// it is 0.
 static inline float share_color(double reflectance, double light)
 {
     const double color = reflectance * light;
@@ -102,12 +103,13 @@ static inline uint32_t sharing_lights(const light_factors *factors, int term)
     return term ? factors->shiny : (1u << factors->count) - 1;
 }
 
-/// kd Id, ks Is and the microfacets' factors of a material for all lights of a call. They are cached because
-/// consecutive groups often show the same material.
+/// The products kd Id and ks Is, and the factors of microfacets, of one material for all lights of a call. They are
+/// cached because consecutive groups often show the same material.
 typedef struct light_colors {
-    const glint_shade_args *of; ///< NULL: none yet
+    const glint_shade_args *of; ///< NULL: no colours are cached yet
     const glint_shade_material *material;
-    float color[2][GLINT_LIGHT_CHUNK][3], rise[GLINT_LIGHT_CHUNK][3]; ///< color: by term
+    float color[2][GLINT_LIGHT_CHUNK][3], rise[GLINT_LIGHT_CHUNK][3]; ///< color[0]: diffuse, color[1]: specular;
+        ///< rise: factor of Schlick's term
 } light_colors;
 
 /// Computes the colours. specular: highlights are wanted.
@@ -129,7 +131,7 @@ static inline void color_lights(const glint_shade_args *args, const glint_shade_
     }
 }
 
-/// Computes one vector of the contribution of the light in `slot`, in each channel. `facets` is a constant.
+/// Computes one vector of lanes of the contribution of the light in `slot`, in each channel. `facets` is a constant.
 INNER void share_channels(const light_factors *factors, const light_colors *colors, const bool facets, int term, uint32_t slot,
                           int i, vf share[3])
 {
@@ -157,8 +159,8 @@ INNER void add_lights(const light_factors *factors, const light_colors *colors, 
     }
 }
 
-/// Computes one vector of the rounded sum of all lights' contributions; for one light, its contribution. `facets` is
-/// a constant.
+/// Computes one vector of lanes of the rounded sum of all lights' contributions. With one light, this is the light's
+/// contribution. `facets` is a constant.
 INNER void sum_lights(const light_factors *factors, const light_colors *colors, const bool facets, int term, int i, vf sum[3])
 {
     const uint32_t lights = sharing_lights(factors, term), more = lights & (lights - 1);
@@ -183,7 +185,7 @@ static inline void light_material(const glint_shade_material *material, const li
         sum_lights(factors, colors, false, term, i, sum);
 }
 
-/// Returns the number of a material's terms that lights contribute to: 0, 1 for diffuse, or 2 for specular, too.
+/// Returns the number of a material's terms that lights contribute to: 0, 1 (diffuse), or 2 (diffuse and specular).
 static inline int lit_kinds(const light_factors *factors, bool specular)
 {
     return factors->count == 0 ? 0 : specular ? 2 : 1;
@@ -211,7 +213,7 @@ static __attribute__((noinline)) void shade_direct(const glint_shade_args *args,
 
 static inline dm lane_mask(unsigned lanes, int i) { return dm_from_bits(lanes >> i & ((1u << VD) - 1)); }
 
-/// Stores one vector of a sum in the given lanes; `whole`: these are all lanes of the group.
+/// Stores one vector of a sum in the given lanes; `whole`: whether these are all lanes of the group.
 static inline void put_where(double *sum, int i, bool whole, unsigned lanes, vd x)
 {
     d_store(sum + i, whole ? x : d_select(lane_mask(lanes, i), x, d_load(sum + i)));
@@ -223,13 +225,13 @@ static inline void add_where(double *sum, int i, bool whole, unsigned lanes, vd 
     put_where(sum, i, whole, lanes, d_load(sum + i) + x);
 }
 
-/// Sums in double over samples and lights; `at`: the position of a group in them.
+/// Sums in double over samples and lights; `at`: the offset of a group in these sums.
 typedef struct group_sums {
     double *const (*sum)[3];
     size_t at;
 } group_sums;
 
-/// Adds one vector of a material's lanes to the sums of a term. `whole`, a constant: all lanes.
+/// Adds one vector of a material's lanes to the sums of a term. `whole`, a constant: the material is in all lanes.
 static inline void add_term(const glint_shade_material *material, const light_factors *factors, const light_colors *colors,
                             const group_sums *to, bool whole, unsigned lanes, int term, int i)
 {
@@ -247,7 +249,7 @@ static inline void add_term(const glint_shade_material *material, const light_fa
             put_where(to->sum[GLINT_TERM_DIFFUSE + term][c] + to->at, i + h * VD, whole, lanes, total[c][h]);
 }
 
-/// Adds one material's lanes of a group to sums. `whole`, a constant: all lanes.
+/// Adds one material's lanes of a group to sums. `whole`, a constant: the material is in all lanes.
 static inline void add_material(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                                 const light_factors *factors, light_colors *colors, const group_sums *to, bool whole, unsigned lanes)
 {
@@ -260,7 +262,8 @@ static inline void add_material(const glint_shade_args *args, const glint_shade_
             add_term(material, factors, colors, to, whole, lanes, term, i);
 }
 
-/// Returns the material of the first of some lanes of a group, and computes the lanes that have it.
+/// Returns the material of the first of the given lanes of a group, and computes which of these lanes have the same
+/// material.
 static inline const glint_shade_material *material_of(const glint_shade_args *args, size_t at, unsigned *lanes)
 {
     const uint32_t index = args->only ? *args->only : args->material[at + (unsigned)__builtin_ctz(*lanes)];

@@ -19,7 +19,7 @@ static inline vf beckmann_mask(vf alpha, vf x)
     return f_select(f_lt(q, f_set(1.6f)), fit, f_set(0));
 }
 
-/// Returns pi D G / (4 n.v) of the GGX distribution; l, v: the cosines.
+/// Returns pi D G / (4 n.v) of the GGX distribution; l, v: the cosines n.l and n.v.
 static inline vf ggx_lobe(vf alpha, vf sine2, vf l, vf v)
 {
     const vf one = f_set(1), aa = alpha * alpha, b = one - aa;
@@ -46,8 +46,8 @@ static inline void put_share(float *to, bool add, vf share)
     f_store(to, share);
 }
 
-/// Stores w S of a lobe other than a bare power, and for microfacets w S (1 - v.h)^5. The arguments are those of
-/// put_factors.
+/// Stores w S for lobes that are not only a power of a cosine, and for microfacets also w S (1 - v.h)^5. The
+/// arguments are the same as for put_factors.
 static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, const glint_shade_light *light,
                                                const glint_shade_material *material, size_t at, bool add,
                                                float highlight[GLINT_GROUP], float grazing[GLINT_GROUP])

@@ -1,5 +1,5 @@
 // view and facet: the inputs of materials with microfacets: the angle at which a point is seen, the angle between
-// each light's half vector and the normal, and Fresnel's reflection there. Contract: stages.h.
+// each light's half vector and the normal, and the Fresnel reflection at the half vector. Contract: stages.h.
 #ifndef GLINT_SHADE_MICROFACETS_H
 #define GLINT_SHADE_MICROFACETS_H
 
@@ -43,8 +43,8 @@ static inline bool R(has_facets)(const glint_facet_args *args, size_t at, unsign
     return false;
 }
 
-/// Computes the real part of one vector of lanes: the squared sine, and (v.h)^2. Returns the lanes that have a half
-/// vector.
+/// Computes the real part of one vector of lanes: the squared sine, and (v.h)^2. Returns the lanes in which the half
+/// vector is defined.
 static inline unsigned R(facet_lanes)(const vr n[3], const vr l[3], const vr d[3], float *sine2, float *square)
 {
     const vr zero = r_set(0), one = r_set(1), two = r_set(2);

@@ -13,13 +13,13 @@
 enum { MIXED_AMBIENT, MIXED_DIFFUSE = 3, MIXED_SPECULAR = 6, MIXED_EXPONENT = 9, MIXED_COUNT };
 
 typedef struct mixed_numbers {
-    const glint_shade_material *of; ///< NULL: none yet
+    const glint_shade_material *of; ///< NULL: no material is cached yet
     float number[MIXED_COUNT];
 } mixed_numbers;
 
-/// The values of materials that previous groups showed.
+/// The cached values of materials that previous groups showed.
 typedef struct mixed_table {
-    bool usable; ///< there is at most one light, and no sum of samples
+    bool usable; ///< true: there is at most one light, and its samples are not summed up
     mixed_numbers materials[MIXED_MATERIALS];
 } mixed_table;
 
@@ -50,14 +50,14 @@ static inline const float *mixed_numbers_of(const glint_shade_args *args, const 
     return out->number;
 }
 
-/// Returns whether the material only differs from others by these values.
+/// Returns whether the material differs from other materials only by the values above.
 static inline bool is_plain_material(const glint_shade_material *material)
 {
     return !material->planes && (!material->highlight || material->lobe == GLINT_LOBE_POWER);
 }
 
-/// Looks up the values of a group's lanes, 0 for misses; *specular: some have highlights. Returns false if a material
-/// is not plain.
+/// Looks up the values of a group's lanes, which are 0 for misses; *specular: whether any lane has a highlight.
+/// Returns false if a material is not plain.
 INNER bool find_mixed(const glint_shade_args *args, uint32_t g, mixed_table *table,
                       float lanes_of[MIXED_COUNT][GLINT_GROUP], bool *specular)
 {
@@ -76,7 +76,7 @@ INNER bool find_mixed(const glint_shade_args *args, uint32_t g, mixed_table *tab
     return true;
 }
 
-/// Shades a group. Returns whether it did.
+/// Shades a group. Returns whether the group could be shaded here.
 static __attribute__((noinline)) bool shade_mixed(const glint_shade_args *args, uint32_t g, mixed_table *table)
 {
     const size_t at = (size_t)g * GLINT_GROUP;

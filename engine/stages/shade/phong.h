@@ -1,5 +1,5 @@
-// phong: the local lighting of one light: diffuse w (n.l), and the highlight w S with S = 2^(shininess log2 x), where
-// w is the attenuation. The stage light computes x: r.v for Phong (B. T. Phong, "Illumination for Computer Generated
+// phong: the local lighting of one light: diffuse w (n.l), and the highlight w S. Here w is the attenuation, and S =
+// 2^(shininess log2 x). The stage light computes x: r.v for Phong (B. T. Phong, "Illumination for Computer Generated
 // Pictures", CACM 18(6), 1975), n.h for Blinn-Phong (J. F. Blinn, "Models of Light Reflection for Computer
 // Synthesized Pictures", SIGGRAPH 1977). Contract: stages.h.
 #ifndef GLINT_SHADE_PHONG_H
@@ -11,16 +11,17 @@
 /// does not reach.
 typedef struct light_factors {
     _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
-    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< for microfacets: specular times Fresnel's rise
+    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< for microfacets: the specular factor times
+        ///< Schlick's (1 - v.h)^5
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
-    uint8_t number[GLINT_LIGHT_CHUNK]; ///< of the light
+    uint8_t number[GLINT_LIGHT_CHUNK]; ///< number of each light in the call
     uint32_t count;
     uint32_t shiny; ///< one bit for each light whose specular factors are not all 0
 } light_factors;
 
-/// Computes w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a
-/// constant: the material's. `add`: adds to the stored values of the light that it is joined to. Returns whether w S
-/// may be above 0 anywhere.
+/// Computes w (n.l) and w S of one light or sample, for a group. `exponent`: the exponent of each lane of the group;
+/// NULL, a constant: the material's exponent. `add`: adds to the stored values of the light to which this light is
+/// joined. Returns whether w S may be above 0 in any lane.
 INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, const float *exponent,
                        bool specular, size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {

@@ -1,4 +1,4 @@
-// planes: materials with values that differ between samples, and are read from planes. Contract: stages.h, shade.
+// planes: shades materials whose values differ between samples and are read from planes. Contract: stages.h, shade.
 #ifndef GLINT_SHADE_PLANES_H
 #define GLINT_SHADE_PLANES_H
 
@@ -8,7 +8,7 @@
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Returns the product of a plane and a light's colour, like share_color.
+/// Returns the product of a plane's values and a light's colour, like share_color.
 static inline vf plane_color(const float *plane, double light)
 {
     vd halves[VF / VD];
@@ -16,7 +16,7 @@ static inline vf plane_color(const float *plane, double light)
     return f_min(f_join(halves[0] * d_set(light), halves[1] * d_set(light)), f_set(FLT_MAX));
 }
 
-/// Computes one vector of a factor times its colour; plane NULL: the colour of the table.
+/// Computes one vector of a factor times a colour; plane NULL: the colour comes from the table.
 static inline vf plane_product(const float *factor, const float *plane, double constant, double light)
 {
     const vf color = plane ? plane_color(plane, constant * light) : f_set(share_color(constant, light));
@@ -24,7 +24,7 @@ static inline vf plane_product(const float *factor, const float *plane, double c
 }
 
 /// Returns the plane of a material's reflectance in a channel; term 0: diffuse, otherwise specular. NULL: the
-/// reflectance is the table's.
+/// reflectance is in the material table.
 static inline const float *plane_of(const glint_shade_args *args, const glint_shade_material *material, int term, int c,
                                     size_t at)
 {
@@ -77,7 +77,7 @@ static inline void find_plane_factors(const glint_shade_args *args, const glint_
         add_factors(args, material, NULL, specular, g, factors);
 }
 
-/// Like add_material.
+/// Like add_material, for a material with planes.
 static __attribute__((noinline)) void add_planes(const glint_shade_args *args, const glint_shade_material *material,
                                                  bool specular, uint32_t g, const group_sums *to, unsigned lanes)
 {
@@ -98,7 +98,7 @@ static __attribute__((noinline)) void add_planes(const glint_shade_args *args, c
     }
 }
 
-/// Computes the sum of all lights' contributions to a term, in double, then rounded.
+/// Computes the sum of all lights' contributions to a term in double, and rounds it.
 static inline void sum_plane_shares(const glint_shade_args *args, const glint_shade_material *material,
                                     const light_factors *factors, int term, int c, size_t at, float sum[GLINT_GROUP])
 {
@@ -126,8 +126,8 @@ static inline vf scaled_plane(const float *plane, double number)
     return f_join(part[0] * d_set(number), part[1] * d_set(number));
 }
 
-/// Computes one channel of whole_planes. `has`: the material's planes. light NULL: none reaches the group. Numbers
-/// are read first, because stores might change what pointers point to.
+/// Computes one channel of whole_planes. `has`: the material's planes. light NULL: no light reaches the group. The
+/// function reads all numbers first, because the compiler must assume that stores change them.
 INNER void whole_channel(const glint_shade_args *args, const glint_shade_material *material, unsigned has, bool shines,
                          const light_factors *factors, int c, size_t at)
 {
@@ -152,7 +152,7 @@ INNER void whole_channel(const glint_shade_args *args, const glint_shade_materia
     }
 }
 
-/// Like shade_whole. Diffuse reflectances that are also the ambient ones are the common case.
+/// Like shade_whole. In the common case, the diffuse reflectance is also the ambient reflectance.
 static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
                                                    bool shines, const light_factors *factors, size_t at)
 {

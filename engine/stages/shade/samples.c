@@ -1,4 +1,4 @@
-// The colours of samples, and their sums.
+// The colours of samples, and the sums over samples.
 #include "engine/stages/film/resolve.h"
 #include "engine/stages/film/samples.h"
 #include "engine/stages/shade/shade.h"

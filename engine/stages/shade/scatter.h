@@ -38,7 +38,7 @@ static inline void R(scatter_lanes)(const glint_scatter_args *args, vr u, vr v, 
         r_store((real *)args->direction[k] + at, (x * tangent[k] + y * bitangent[k]) + h * n[k]);
 }
 
-/// Computes the directions of the first `count` of some groups; the others are undefined.
+/// Computes the directions of the first `count` groups of a list; the directions of the other groups are undefined.
 static void R(scatter_groups)(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS], uint32_t count)
 {
     _Alignas(64) double points[2][DRAWN];

@@ -1,12 +1,12 @@
 // sequence: points of scrambled Sobol sequences, as plain loops over arrays, which compilers vectorise. Each product
-// depends on the one before it, so two vectors are interleaved. The arithmetic: base/sequence.c,
-// glint_sequence_flipped.
+// depends on the previous product, so two vectors are interleaved. glint_sequence_flipped in base/sequence.c defines
+// the arithmetic.
 #ifndef GLINT_SHADE_SEQUENCE_H
 #define GLINT_SHADE_SEQUENCE_H
 
 #include "engine/stages/simd/elementary.h"
 
-#define DRAWN_GROUPS (VF < GLINT_GROUP ? 1 : 2) ///< computed together, so that there are two vectors
+#define DRAWN_GROUPS (VF < GLINT_GROUP ? 1 : 2) ///< groups that are computed together, so that there are two vectors
 #define DRAWN (DRAWN_GROUPS * GLINT_GROUP)
 
 /// Reverses the bits of each number.
@@ -21,7 +21,7 @@ static inline void reverse_drawn(uint32_t x[DRAWN])
     }
 }
 
-/// Flips each bit or not, depending on the seed and the bits below it.
+/// Flips each bit or not, depending on the seed and on the lower bits.
 static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++) {
@@ -33,7 +33,8 @@ static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
 }
 
 /// Computes the second coordinate's bits, lowest first, from the bits of the index. Bit i of the index stands for (1
-/// + x)^i modulo 2. Halves are separated by (1 + x)^16 = 1 + x^16, and so on down.
+/// + x)^i modulo 2. The identity (1 + x)^16 = 1 + x^16 separates the two halves of the bits, then (1 + x)^8 = 1 + x^8
+/// their halves, and so on.
 static inline void second_drawn(uint32_t x[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++) {
@@ -52,14 +53,14 @@ static inline void scale_drawn(const uint32_t digits[DRAWN], double out[DRAWN])
         out[i] = (digits[i] + 0.5) * 0x1p-32;
 }
 
-/// Gathers the numbers of some groups, one group after the other.
+/// Copies the numbers of the listed groups, one group after the other.
 static inline void take_groups(const uint32_t *from, const uint32_t groups[DRAWN_GROUPS], uint32_t to[DRAWN])
 {
     for (int k = 0; k < DRAWN_GROUPS; k++)
         memcpy(to + k * GLINT_GROUP, from + (size_t)groups[k] * GLINT_GROUP, GLINT_GROUP * sizeof *to);
 }
 
-/// Computes points of the sequences of some groups.
+/// Computes points of the sequences of the listed groups.
 static inline void scrambled_groups(const glint_scatter_args *args, const uint32_t groups[DRAWN_GROUPS],
                                     double out[2][DRAWN])
 {

@@ -12,7 +12,7 @@
 #include "engine/stages/shade/planes.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Shades a group of one sample, and adds it to sums.
+/// Shades a group of one sample, and adds the result to the sums.
 static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, light_colors *colors,
                                                  const group_sums *to)
 {
@@ -37,7 +37,7 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
     }
 }
 
-/// Stores the terms that are needed, and adds them up.
+/// Stores the terms that are needed, and adds all terms up.
 static inline void finish_terms(const group_terms *terms, float *const film[][3], float *const beauty[3], size_t at)
 {
     for (int c = 0; c < 3; c++)
@@ -67,7 +67,7 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
     }
 }
 
-/// Stores a group of one colour: without any surface, or without any light.
+/// Stores a group that has one colour in every lane, because it shows no surface, or no light reaches it.
 static inline void store_even(const glint_shade_args *args, const float color[3], size_t at)
 {
     for (int c = 0; c < 3; c++)
@@ -75,8 +75,8 @@ static inline void store_even(const glint_shade_args *args, const float color[3]
             f_store(args->beauty[c] + at + i, f_set(color[c]));
 }
 
-/// Shades a group that shows one material in every lane, with given values, at most one light, and no terms to store:
-/// the common case, in registers.
+/// Shades a group in registers, in the common case: one material in every lane, with the given values, at most one
+/// light, and no terms to store.
 INNER void shade_whole(const glint_shade_args *args, const glint_shade_material *material, const float *number, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -109,7 +109,7 @@ static __attribute__((noinline)) void shade_lit(const glint_shade_args *args, co
         vf light[2][3] = { { f_set(0), f_set(0), f_set(0) }, { f_set(0), f_set(0), f_set(0) } };
         for (int k = 0; k < kinds; k++)
             light_material(material, factors, colors, k, i, light[k]);
-        for (int c = 0; c < 3; c++) // in the order of finish_terms
+        for (int c = 0; c < 3; c++) // the sums have the order of finish_terms
             f_store(args->beauty[c] + at + i, (f_set(0 + (float)material->ambient[c]) + light[0][c]) + light[1][c]);
     }
 }
@@ -122,7 +122,8 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-/// Shades a group whose terms are final; `simple` is a constant.
+/// Shades a group whose terms are final, because this call has all lights and there is one sample; `simple` is a
+/// constant.
 INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, light_colors *colors,
                        mixed_table *mixed)
 {

@@ -1,5 +1,5 @@
-// surface_mesh: groups that show several triangles. They are computed a vector at a time, with a different triangle
-// in each lane. The arithmetic is that of triangle.h. Contract: stages.h, surface.
+// surface_mesh: points and normals of groups that show several triangles, computed a vector at a time, with a
+// different triangle in each lane. The arithmetic is the same as in triangle.h. Contract: stages.h, surface.
 #ifndef GLINT_SURFACE_MESH_H
 #define GLINT_SURFACE_MESH_H
 
@@ -8,8 +8,8 @@
 /// The triangles of a group, one per lane.
 typedef struct R(mesh_group) {
     _Alignas(64) double corner[3][3][GLINT_GROUP];
-    _Alignas(64) double normal[3][GLINT_GROUP]; ///< geometric, unit
-    _Alignas(64) double corner_normal[3][3][GLINT_GROUP]; ///< in the lanes of `smooth`
+    _Alignas(64) double normal[3][GLINT_GROUP]; ///< geometric unit normals
+    _Alignas(64) double corner_normal[3][3][GLINT_GROUP]; ///< normals at the three corners, in the lanes of `smooth`
     unsigned smooth;
 } R(mesh_group);
 
@@ -29,7 +29,7 @@ INNER void R(load_corners)(double corner[3][3][GLINT_GROUP], int i, vr out[3][3]
         out[j / 3][j % 3] = R(load_rounded)(corner[j / 3][j % 3] + i);
 }
 
-/// Returns the lanes of `hits` that show triangles, if they show more than one primitive.
+/// Returns the lanes of `hits` that show triangles, provided that `hits` show more than one primitive.
 static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, unsigned hits)
 {
     const uint32_t *prim = args->prim + at;
@@ -44,7 +44,7 @@ static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, 
     return found;
 }
 
-/// Stores the materials of some lanes. Returns the lanes whose surface is one-sided.
+/// Stores the materials of the given lanes. Returns those of the lanes whose surface is one-sided.
 static inline unsigned R(put_materials)(const glint_surface_args *args, size_t at, unsigned lanes)
 {
     unsigned one_sided = 0;
@@ -74,7 +74,7 @@ static inline void R(load_corner_normals)(const glint_surface_args *args, size_t
     }
 }
 
-/// Fills `lanes`, and puts harmless numbers into the other lanes.
+/// Loads the triangles of `lanes`, and puts harmless numbers into the other lanes.
 static void R(load_mesh)(const glint_surface_args *args, size_t at, unsigned lanes, R(mesh_group) * mesh)
 {
     const uint32_t some = args->prim[at + (size_t)__builtin_ctz(lanes)];

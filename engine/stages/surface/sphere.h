@@ -5,8 +5,8 @@
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
-/// Computes the normal if the origin is so far away that origin and sphere have no common digits except for the foot
-/// of the perpendicular.
+/// Computes the normal if the origin is so far away that origin plus t direction loses all digits of the sphere. The
+/// normal is instead computed from the foot of the perpendicular from the centre to the ray.
 static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
 {
     const vr zero = r_set(0);
@@ -23,10 +23,10 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
         n[k] = r_select(defined, n[k] / length, -d[k] / ray);
 }
 
-/// Bounds of the distance of the origin, for all lanes.
+/// Bounds of the distance between the origin and the sphere, for all lanes.
 typedef enum R(sphere_range) { R(RANGE_ANY), R(RANGE_NEAR), R(RANGE_CLOSE) } R(sphere_range);
 
-/// Returns the range. f: of a camera.
+/// Returns the range for a camera. f: from the sphere's centre to the eye.
 static R(sphere_range) R(range_of)(const real f[3])
 {
     const real ff = DOT(f, f);

@@ -1,5 +1,5 @@
 // surface: the point, the normal and the material of each hit. A group is processed object by object. Most groups
-// show only one, so that its numbers are the same in every lane. Contract: stages.h.
+// show only one object, so that the object's constants are the same in every lane. Contract: stages.h.
 #ifndef GLINT_SURFACE_SURFACE_H
 #define GLINT_SURFACE_SURFACE_H
 
@@ -11,8 +11,8 @@
 #include "engine/stages/surface/mesh.h"
 #include "engine/stages/surface/sphere.h"
 
-/// Projects points next to a plane of any normal onto it. The remaining height is within one rounding, wherever the
-/// rays started.
+/// Projects points next to a plane of any normal onto it. The height that remains is within one rounding, wherever
+/// the rays started.
 INNER void R(onto_plane_of)(const glint_prim *prim, const vr n[3], vr p[3])
 {
     const vr q[3] = { p[0] - r_set(prim->center[0]), p[1] - r_set(prim->center[1]), p[2] - r_set(prim->center[2]) };
@@ -21,7 +21,7 @@ INNER void R(onto_plane_of)(const glint_prim *prim, const vr n[3], vr p[3])
         p[k] = p[k] - h * n[k];
 }
 
-/// Stores `x` in the lanes of `mask`; `whole`: these are all lanes.
+/// Stores `x` in the lanes of `mask`; `whole`: whether these are all lanes.
 INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 {
     real *to = (real *)array + at;
@@ -32,16 +32,17 @@ INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 
 /// The constants of a primitive for all rays of a camera.
 typedef struct R(seen_prim) {
-    uint32_t id; ///< GLINT_MISS: none yet
+    uint32_t id; ///< GLINT_MISS: no primitive yet
     const glint_prim *prim;
-    real scale, inverse_radius; ///< of a sphere, in its own units
-    R(sphere_range) range; ///< distance of the eye from a sphere
-    real f[3]; ///< of a sphere, scaled; of a solid, in the space of the unit shape
-    real normal[3]; ///< of a plane or triangle
-    int level; ///< of a plane: the axis that it is perpendicular to; 3: none
+    real scale, inverse_radius; ///< for a sphere, in the sphere's units
+    R(sphere_range) range; ///< for a sphere: bounds of the distance of the eye
+    real f[3]; ///< vector from the centre to the eye: for a sphere, scaled; for a solid, in the space of the unit
+        ///< shape
+    real normal[3]; ///< normal of a plane or a triangle
+    int level; ///< for a plane: the axis that the plane is perpendicular to; 3: none
     real from[3],
-        factor[3]; ///< of a plane: points are at from + factor (t direction); along that axis this is the plane's
-        ///< exact coordinate
+        factor[3]; ///< for a plane: points are at from + factor (t direction). Along the axis `level`, from is the
+        ///< plane's exact coordinate
 } R(seen_prim);
 
 /// Computes the constants of a primitive in place, because reading a copy of just-written numbers would stall.
@@ -79,16 +80,17 @@ static inline void R(see_prim)(const glint_surface_args *args, uint32_t id, R(se
 /// One primitive and its constants.
 typedef struct R(seen_slot) {
     R(seen_prim) prim;
-    real height[6]; ///< of the eye over a solid's faces
+    real height[6]; ///< heights of the eye over a solid's faces
 } R(seen_slot);
 
-#define SEEN_SLOTS 4 ///< the groups of a tile return to the same few primitives
+#define SEEN_SLOTS 4 ///< number of cached primitives; the groups of a tile show the same few primitives again and
+    ///< again
 
 /// State while iterating over the groups of a tile.
 typedef struct R(surface_walk) {
-    uint32_t only; ///< the only primitive so far, GLINT_MISS: none
-    bool several, any_back; ///< there are other primitives; some lane is seen from behind
-    R(seen_slot) * last; ///< of the last primitive
+    uint32_t only; ///< the only primitive that groups showed so far; GLINT_MISS: none
+    bool several, any_back; ///< true: groups showed other primitives, too; some lane is seen from behind
+    R(seen_slot) * last; ///< the slot of the last primitive
     R(seen_slot) slots[SEEN_SLOTS]; ///< indexed by the lowest bits of the primitive's index; only one is used if there
         ///< are only balls and planes, whose constants are computed quickly
 } R(surface_walk);
@@ -96,7 +98,7 @@ typedef struct R(surface_walk) {
 /// Returns the last primitive's slot; mixed: a constant, see glint_surface_args.
 INNER R(seen_slot) *R(last_seen)(R(surface_walk) * walk, const bool mixed) { return mixed ? walk->last : walk->slots; }
 
-/// One vector of lanes of one primitive.
+/// Points and normals of one vector of lanes that show one primitive.
 typedef struct R(surface_lanes) {
     vr direction[3], point[3], normal[3], slack;
     vr away; ///< dot(outward normal, direction)
@@ -240,7 +242,8 @@ typedef enum R(surface_outputs) {
     R(POINTS_ONLY) ///< only points, of balls and planes
 } R(surface_outputs);
 
-/// Stores some lanes of a vector, and leaves the others unchanged. Returns the lanes that are seen from behind.
+/// Stores the given lanes of a vector, and leaves the other lanes unchanged. Returns the lanes that are seen from
+/// behind.
 INNER unsigned R(store_lanes)(const glint_surface_args *args, const R(surface_lanes) * surface, size_t at,
                               unsigned lanes, R(surface_outputs) outputs, R(point_box) * box)
 {
@@ -259,7 +262,7 @@ INNER unsigned R(store_lanes)(const glint_surface_args *args, const R(surface_la
     return rm_bits(surface->back) & lanes;
 }
 
-/// Zeroes the lanes of a group of which only some hit.
+/// Zeroes all lanes of a group in which only some lanes have hits.
 static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 {
     for (int k = 0; k < 3; k++)
@@ -283,7 +286,8 @@ INNER void R(begin_walk)(const glint_surface_args *args, R(surface_walk) * walk)
     walk->several = walk->any_back = false;
 }
 
-/// Not inlined, so that the result stays in memory, from where it is broadcast to all lanes.
+/// Loads the constants of another primitive. Not inlined, so that the result stays in memory, from where it is
+/// broadcast to all lanes.
 static __attribute__((noinline)) void R(load_other_prim)(const glint_surface_args *args, R(surface_walk) * walk,
                                                          uint32_t id)
 {
@@ -335,8 +339,8 @@ static inline bool R(is_near_or_plane)(const R(seen_prim) * seen)
     return kind == GLINT_PRIM_PLANE || (kind == GLINT_PRIM_SPHERE && seen->range != R(RANGE_ANY));
 }
 
-/// Computes directions, outward normals and points of lanes i .. of a group that shows, in every lane, one plane, one
-/// solid, or one sphere that is not far from the camera; `kind` is a constant.
+/// Computes directions, outward normals and points of the lanes from i on of a group that shows, in every lane, one
+/// plane, one solid, or one sphere that is not far from the camera; `kind` is a constant.
 INNER void R(find_whole)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                          R(group_directions) directions, size_t at, int i, vr d[3], vr n[3], vr p[3])
 {
@@ -380,7 +384,8 @@ INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * s
     }
 }
 
-/// Computes only the points of a group that shows one other plane, or a sphere; `kind` is a constant.
+/// Computes only the points of a group that shows one plane of any other direction, or one sphere; `kind` is a
+/// constant.
 INNER void R(place_lanes)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                           R(group_directions) directions, size_t at)
 {
@@ -408,7 +413,8 @@ INNER void R(place_whole)(const glint_surface_args *args, R(seen_slot) * slot, R
         R(place_lanes)(args, slot, GLINT_PRIM_PLANE, directions, at);
 }
 
-/// Computes one group with hits: its triangles together, if there are several, and the rest primitive by primitive.
+/// Computes one group with hits: its triangles together, if there are several, and the other lanes primitive by
+/// primitive.
 INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
                             R(group_cursor) cursor, R(surface_outputs) outputs)
 {
