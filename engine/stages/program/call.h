@@ -1,5 +1,5 @@
-// Common code of the kernels of operations. Each reads and writes whole rows, one vector after the other. For each
-// vector it reads all operands before it writes a result, so that a result may replace an operand.
+// Common code of the kernels of operations. Each kernel reads and writes whole rows, one vector after the other. For
+// each vector, the kernel reads all operands before it writes a result, so that a result may overwrite an operand.
 #ifndef GLINT_PROGRAM_CALL_H
 #define GLINT_PROGRAM_CALL_H
 
@@ -7,8 +7,8 @@
 
 typedef struct op_call {
     const double *in[GLINT_OPERANDS_MAX];
-    size_t step[GLINT_OPERANDS_MAX]; ///< an operand is read at lane & step; 0 for a number, which is only one group
-        ///< long
+    size_t step[GLINT_OPERANDS_MAX]; ///< operand k is read at index lane & step[k]; 0 for a constant, which is only
+        ///< one group long
     double *out[GLINT_RESULTS_MAX];
     size_t lanes;
     const glint_texture_table *texture;
@@ -16,7 +16,8 @@ typedef struct op_call {
 
 static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(call->in[k] + (lane & call->step[k])); }
 
-// One result, from operands a; a and b; a, b and c; a to f. The compiler unrolls the inner loop.
+// Defines kernels with one result, from the operands a; a and b; a, b and c; or a to f. The compiler unrolls the
+// inner loop.
 #define OP_KERNEL(name, operands, expression) \
     static void op_##name(const op_call *call) \
     { \
@@ -61,7 +62,7 @@ static inline vd d_horner(const double *c, int count, vd x)
 }
 #define D_HORNER(name, x) d_horner(name, (int)(sizeof name / sizeof *name), x)
 
-/// Replaces lanes of y by a scalar function of the lanes of a and b.
+/// Replaces the given lanes of y by a scalar function of these lanes of a and b.
 static __attribute__((noinline)) vd d_each(vd y, unsigned lanes, vd a, vd b, double (*function)(double, double))
 {
     _Alignas(64) double out[VD], x[2][VD];

@@ -13,14 +13,14 @@
 #define CELL_SIDE 5
 
 typedef struct cell_place {
-    vq word[3][CELL_SIDE]; ///< of the hash, for each cube along an axis
+    vq word[3][CELL_SIDE]; ///< terms of the hash, for each cube along each axis
     vd x[3][CELL_SIDE]; ///< lower sides of the cubes, relative to the position
-    vd least2[3][CELL_SIDE]; ///< square of the distance to the cubes along the one axis
+    vd least2[3][CELL_SIDE]; ///< squared distances to the cubes, along this axis only
 } cell_place;
 
 typedef struct cell_nearest {
     vd length2[2];
-    vd to[2][3]; ///< relative to the position
+    vd to[2][3]; ///< vectors from the position to the two nearest feature points
 } cell_nearest;
 
 INNER void cell_locate(const vd p[3], cell_place *at)
@@ -59,7 +59,7 @@ INNER void cell_visit(const cell_place *at, int i, int j, int k, bool slope, cel
     nearest->length2[0] = d_select(first, length2, nearest->length2[0]);
 }
 
-/// Returns whether a cube of 0 .. 124, x fastest, is in this ring around the middle.
+/// Returns whether the cube (i, j, k) is in the given ring around the middle cube.
 INNER bool cell_in_ring(int i, int j, int k, int ring)
 {
     const int a = abs(i - CELL_SIDE / 2), b = abs(j - CELL_SIDE / 2), c = abs(k - CELL_SIDE / 2);

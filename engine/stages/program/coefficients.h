@@ -1,13 +1,13 @@
 /// Coefficients of the operations of programs: the polynomials of their elementary functions, and the hash.
 ///
-/// Taylor series where noted, otherwise Chebyshev interpolation in exact arithmetic, rounded to double. The relative
-/// error of each polynomial on its interval is below 1e-16.
+/// The polynomials are Taylor series where noted, otherwise Chebyshev interpolations in exact arithmetic, rounded to
+/// double. The relative error of each polynomial on its interval is below 1e-16.
 #ifndef GLINT_PROGRAM_COEFFICIENTS_H
 #define GLINT_PROGRAM_COEFFICIENTS_H
 
 #include "engine/stages/simd/coefficients.h"
 
-// pi/2 = high + middle + low, the first two of 33 bits, so that their products with a number of 20 bits are exact
+// pi/2 = high + middle + low. The first two have 33 bits, so that their products with a number of 20 bits are exact
 #define GLINT_HALF_PI_HIGH 0x1.921fb54400000p+0
 #define GLINT_HALF_PI_MIDDLE 0x1.0b4611a600000p-34
 #define GLINT_HALF_PI_LOW 0x1.3198a2e037073p-69
@@ -15,7 +15,7 @@
 #define GLINT_PI_2 0x1.921fb54442d18p+0
 #define GLINT_PI_4 0x1.921fb54442d18p-1
 #define GLINT_PI_1 0x1.921fb54442d18p+1
-#define GLINT_ANGLE_MAX 0x1p20 ///< larger angles are reduced one by one
+#define GLINT_ANGLE_MAX 0x1p20 ///< lanes with a larger angle are reduced one by one
 #define GLINT_TAN_PI_8 0x1.a827999fcef32p-2
 
 // sin(x) = x + (x z) (S0 + S1 z ...), cos(x) = 1 + z (C0 + C1 z ...), z = x x, |x| <= pi/4: Taylor
@@ -61,7 +61,7 @@
             0x1.abe7380074e55p-8, 0x1.3fb59ef99ab8bp-6, -0x1.09372b2b156dfp-6, 0x1.0528866391770p-5 \
     }
 
-// The hash: odd 32-bit numbers without a pattern, one per coordinate
+// The factors of the hash: odd 32-bit numbers without a pattern, one per coordinate
 #define GLINT_HASH_X 0xb5a3f1e7u
 #define GLINT_HASH_Y 0x93d1c2b5u
 #define GLINT_HASH_Z 0xd8e6a94du
@@ -70,7 +70,8 @@
 #define GLINT_HASH_B 0xaf1d35c9u
 #define GLINT_HASH_C 0xc7a94e6bu
 
-/// Noise: one over the maximum of noise with Perlin's gradients, 1.03635382 at (0.3553, 0.4815, 0.5), rounded down.
+/// Factor of noise: one over the maximum of noise with Perlin's gradients, 1.03635382 at (0.3553, 0.4815, 0.5),
+/// rounded down.
 #define GLINT_NOISE_SCALE 0.9649
 
 #endif

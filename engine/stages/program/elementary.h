@@ -15,7 +15,8 @@
 
 static double scalar_sine(double x, double quarter) { return quarter != 0 ? glint_cos(x) : glint_sin(x); }
 
-/// Returns the sine, or with quarter 1 the cosine. Angles beyond GLINT_ANGLE_MAX are reduced one by one.
+/// Returns the sine (quarter 0) or the cosine (quarter 1). Lanes with angles beyond GLINT_ANGLE_MAX are reduced one
+/// by one.
 INNER vd d_sine(vd x, uint64_t quarter)
 {
     static const double sine[] = GLINT_SINE, cosine[] = GLINT_COSINE;
@@ -105,7 +106,7 @@ OP_KERNEL(pow, OP_AB, d_pow(a, b))
 OP_KERNEL(atan2, OP_AB, d_atan2(a, b))
 OP_KERNEL(acos, OP_A, d_acos(a))
 
-/// S of shade, in shade's float.
+/// Computes the highlight S as the stage shade does, in float.
 static void op_highlight(const op_call *call)
 {
     const vd zero = d_set(0), one = d_set(1);

@@ -1,4 +1,4 @@
-// Operations with one or two roundings, and choices. Contract: contract/program.h.
+// Operations that round once or twice, and selections. Contract: contract/program.h.
 #ifndef GLINT_PROGRAM_EXACT_H
 #define GLINT_PROGRAM_EXACT_H
 
@@ -14,8 +14,8 @@ static inline vd d_round(vd x)
 
 static double scalar_fmod(double a, double b) { return fmod(a, b); }
 
-/// fmod: a - n b is exact, where n is the integer part of the quotient, or one more if the quotient was rounded up to
-/// an integer.
+/// Returns fmod(a, b). a - n b is exact, where n is the integer part of the quotient, or one more if the quotient was
+/// rounded up to an integer.
 static inline vd d_fmod(vd a, vd b)
 {
     const vd size = d_abs(b), quotient = d_abs(a / b), n = d_floor(quotient);
@@ -87,7 +87,8 @@ OP_KERNEL(step, OP_AB, d_select(d_lt(b, a), d_set(0), d_set(1)))
 OP_KERNEL(smoothstep, OP_ABC, d_smoothstep(a, b, c))
 OP_KERNEL(clamp, OP_ABC, d_clamp(a, b, c))
 
-/// Reduces (a b) c, where a and b are one number each, to a product of two. product: a b, a group of it.
+/// Reduces (a b) c, where a and b are constants, to a product of two operands. product: memory for a group of copies
+/// of a b.
 static inline void begin_mulmul(const op_call *call, double product[GLINT_GROUP], op_call *two)
 {
     for (int i = 0; i < GLINT_GROUP; i += VD)
@@ -98,7 +99,7 @@ static inline void begin_mulmul(const op_call *call, double product[GLINT_GROUP]
     two->step[1] = call->step[2];
 }
 
-/// a and b are often the same in all lanes, as values of a material and a light.
+/// Computes (a b) c. a and b are often the same in all lanes, for example values of a material and a light.
 static void op_mulmul(const op_call *call)
 {
     _Alignas(64) double product[GLINT_GROUP];
@@ -115,8 +116,8 @@ static void op_mulmul(const op_call *call)
 
 // ---- Divisors that are powers of two ----
 
-/// Stores a group of 1 / x of an operand that is one number, a power of two in 2^-500 .. 2^500. Returns whether the
-/// operand is such a number.
+/// If operand k is a constant x, and x is a power of two in 2^-500 .. 2^500, stores 1 / x for a group and returns
+/// true. Otherwise returns false.
 static bool invert_power_of_2(const op_call *call, int k, double inverse[GLINT_GROUP])
 {
     const double x = call->in[k][0];

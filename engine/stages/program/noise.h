@@ -8,7 +8,7 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Folds 64 bits; only the lower 32 bits of the result count.
+/// Combines the upper and the lower half of 64 bits; only the lower 32 bits of the result are used.
 static inline vq q_fold(vq x) { return q_xor(x, q_shr(x, 32)); }
 
 static inline vq q_times(vq x, uint32_t factor) { return q_mul(x, q_set(factor)); }
@@ -21,7 +21,7 @@ static inline vq q_hash(vq sum) { return q_fold(q_times(q_fold(sum), GLINT_HASH_
 
 static inline vq q_hash_word(vq h, vq word, uint32_t factor) { return q_fold(q_times(q_xor(h, word), factor)); }
 
-/// Returns 32 bits as a number in [0, 1).
+/// Converts 32 bits to a number in [0, 1).
 static inline vd d_of_word(vq word)
 {
     const vq fraction = q_shr(q_shl(word, 32), 12);
@@ -59,8 +59,9 @@ OP_KERNEL(parity, OP_ABC, d_parity(a, b, c))
 
 /// The position of a point in its unit cube.
 typedef struct noise_place {
-    vq word[2][4]; ///< of the hash: for the four edges along z, x fastest; for the two sides along z
-    vd from[3][2]; ///< from each of the two sides to the point
+    vq word[2][4]; ///< terms of the hash: word[0] for the four edges along z, x fastest; word[1] for the two sides
+        ///< along z
+    vd from[3][2]; ///< offsets from each of the cube's two sides along an axis to the point
     vd fade[3];
 } noise_place;
 
@@ -104,8 +105,8 @@ INNER vd d_negated_by_second(vd x, vq h)
 
 /// The two axes of a gradient.
 typedef struct noise_axes {
-    dm y_first; ///< the first axis is y, otherwise x
-    dm y_second, x_second; ///< the second axis is y or x, otherwise z
+    dm y_first; ///< lanes whose first axis is y; it is x in the other lanes
+    dm y_second, x_second; ///< lanes whose second axis is y; is x; it is z in the other lanes
 } noise_axes;
 
 INNER noise_axes noise_axes_of(vq h)
@@ -162,7 +163,7 @@ static void op_noise3(const op_call *call)
     }
 }
 
-/// Computes the contribution of a step along an axis, interpolated along the other two.
+/// Computes the contribution of a step along an axis to the slope, interpolated along the other two axes.
 INNER vd noise_across(const noise_place *at, const vd corner[8], int axis)
 {
     const int step = 1 << axis, a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;

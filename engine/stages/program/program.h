@@ -75,17 +75,17 @@ static inline const double *find_operand(const glint_program_args *args, uint32_
     return args->code->numbers[row - GLINT_ROW_NUMBER];
 }
 
-/// Converts VF numbers to reflectances; NaN gives 0. They are rounded first and then clamped, as the bounds are
-/// floats.
+/// Converts VF numbers to reflectances; NaN gives 0. The numbers are rounded before they are clamped, because the
+/// bounds are floats.
 INNER vf reflectances(vd low, vd high)
 {
     return f_min(f_max(f_join(low, high), f_set(0)), f_set((float)GLINT_REFLECTANCE_MAX));
 }
 
-/// Returns the lanes that are valid reflectances already.
+/// Returns the lanes whose numbers are valid reflectances without clamping.
 INNER dm are_even(vd x) { return dm_and(d_le(d_set(0), x), d_le(x, d_set(GLINT_REFLECTANCE_MAX))); }
 
-/// Returns the lanes of a group that are not.
+/// Returns the lanes of a group whose numbers are not valid reflectances.
 INNER unsigned find_odd(const double *from)
 {
     unsigned even = 0;
@@ -94,12 +94,12 @@ INNER unsigned find_odd(const double *from)
     return ~even;
 }
 
-/// An output: its row, and the positions of its groups.
+/// One output of a call: the row, and the positions of the groups in the result.
 typedef struct output {
     const glint_program_args *args;
     const double *row;
     size_t step;
-    bool whole; ///< all lanes are wanted, and the groups are consecutive: see is_whole
+    bool whole; ///< true: all lanes are wanted, and the groups are consecutive; see is_whole
 } output;
 
 INNER const double *output_of(const output *out, uint32_t g) { return out->row + ((size_t)g * GLINT_GROUP & out->step); }
@@ -111,7 +111,7 @@ INNER size_t place_of(const output *out, uint32_t g)
 
 static bool is_whole(const glint_program_args *args)
 {
-    unsigned wanted = 0xffff, apart = 0; // without a branch for each
+    unsigned wanted = 0xffff, apart = 0; // gathered without a branch for each group
     for (uint32_t g = 0; g < args->group_count; g++)
         wanted &= args->wanted[g];
     for (uint32_t g = 0; args->groups && g < args->group_count; g++)
@@ -119,14 +119,15 @@ static bool is_whole(const glint_program_args *args)
     return wanted == 0xffff && !apart;
 }
 
-/// Records the lanes whose values are not reflectances.
+/// Records in `odd` the lanes whose values are not valid reflectances.
 static void note_odd(const output *out)
 {
     for (uint32_t g = 0; g < out->args->group_count; g++)
         out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
 }
 
-/// Stores the results of a whole call. `watched`, a constant: returns whether all are valid reflectances.
+/// Stores the results of a whole call. If `watched`, a constant, is true: returns whether all results are valid
+/// reflectances.
 INNER bool store_lanes(const output *out, const bool watched, float *to)
 {
     const size_t step = out->step, count = (size_t)out->args->group_count * GLINT_GROUP;
@@ -167,7 +168,7 @@ static void store_plane(const output *out, float *plane)
         note_odd(out);
 }
 
-/// Adds outputs, rounded as in store_plane, times `share`.
+/// Adds an output, rounded as in store_plane, times `share`, to a total.
 static void add_total(const output *out, double *total)
 {
     for (uint32_t g = 0; g < out->args->group_count; g++) {
@@ -235,7 +236,7 @@ static void add_sums(const glint_program_args *args)
         }
 }
 
-/// Adds slopes in lanes where all are finite.
+/// Adds the three slopes to `added`, in lanes where all three are finite.
 static void add_slopes(const glint_program_args *args)
 {
     const vd most = d_set(HUGE_VAL);
@@ -272,7 +273,7 @@ static void add_slopes(const glint_program_args *args)
 
 // ---- Choices by one bit -------------------------------------------------------------------------------------------
 
-/// Stores one of two numbers in the wanted lanes of a group.
+/// Stores one of two numbers in each wanted lane of a group.
 INNER void choose_lanes(float *to, unsigned wanted, unsigned truths, vf no, vf yes)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {

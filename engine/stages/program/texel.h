@@ -1,5 +1,5 @@
-// Texels: level and position are computed for all lanes at once, and the texels are read lane by lane. Contract:
-// contract/program.h.
+// Reads texels. Level and position are computed for all lanes at once, and the texels are read lane by lane.
+// Contract: contract/program.h.
 #ifndef GLINT_PROGRAM_TEXEL_H
 #define GLINT_PROGRAM_TEXEL_H
 
@@ -10,7 +10,7 @@
 
 /// One level of a texture: the four texels to read, and their weights.
 typedef struct texel_place {
-    _Alignas(64) double x[VD], y[VD]; ///< of the first of them, -1 .. side - 1
+    _Alignas(64) double x[VD], y[VD]; ///< column and row of the upper left texel, -1 .. side - 1
     _Alignas(64) double fx[VD], fy[VD];
 } texel_place;
 
@@ -25,7 +25,7 @@ static inline bool texel_repeats_u(const glint_texture_table *texture) { return 
 
 static inline bool texel_repeats_v(const glint_texture_table *texture) { return texture->wrap == GLINT_WRAP_REPEAT; }
 
-/// Computes positions and weights. width, height: of each lane's level.
+/// Computes positions and weights. width, height: the size of each lane's level.
 static void texel_locate(vd u, vd v, vd width, vd height, texel_place *at)
 {
     const vd x = u * width - d_set(0.5), y = (d_set(1) - v) * height - d_set(0.5);
@@ -82,7 +82,7 @@ static void texel_slopes(const float *const corner[4], double fx, double fy, con
     }
 }
 
-/// Returns the level of each lane, with a fraction.
+/// Returns the level that each lane reads; the fraction is the share of the next level.
 static inline vd texel_level(const glint_texture_table *texture, vd footprint)
 {
     const glint_texture_level *whole = &texture->levels[0];
@@ -92,7 +92,8 @@ static inline vd texel_level(const glint_texture_table *texture, vd footprint)
     return d_min(level, d_set(texture->level_count - 1));
 }
 
-/// Reads the level of the given lanes, or, with `next` 1, adds the next level times its share.
+/// Reads the given lanes from their level (`next` 0), or adds the next level times the share of that level (`next`
+/// 1).
 static void texel_add(const op_call *call, vd u, vd v, const double level[VD], unsigned lanes, int next, bool slope,
                       double out[VD][GLINT_RESULTS_MAX])
 {

@@ -15,11 +15,12 @@ static inline void divide_each(const vd d[3], vd by, vd q[3])
 
 #ifdef GLINT_D_FUSED
 /// Computes the same bits with one division instead of three, if |1 - y by| < 2^-53 (y: 1 / by) holds after rounding,
-/// as it then holds exactly. If q is a neighbour of d / by, q + (d - q by) y with both steps fused is d / by rounded
-/// to nearest (after P. Markstein, IBM J. Res. Dev. 34(1), 1990): the error before the last rounding is less than
-/// 2^-53 of the error of q, and d / by is at least 2^-54 of a last place away from the nearest rounding boundary. d y
-/// + d rest, fused, is within 2^-104 of d / by before rounding, and so a neighbour after it. Within the bounds, where
-/// by is at most 2^512 as a root is, no number that matters over- or underflows.
+/// because it then holds exactly. If q is a neighbour of d / by, q + (d - q by) y with both steps fused is d / by
+/// rounded to nearest (after P. Markstein, IBM J. Res. Dev. 34(1), 1990): the error before the last rounding is less
+/// than 2^-53 of the error of q, and d / by is at least 2^-54 of a last place away from the nearest rounding
+/// boundary. d y + d rest, fused, is within 2^-104 of d / by before rounding, and so rounds to a neighbour of d / by.
+/// Within the bounds below, and because the root `by` is at most 2^512, no number that matters overflows or
+/// underflows.
 static inline void divide_by_length(const vd d[3], vd by, vd q[3])
 {
     const vd y = d_set(1) / by, less_1 = d_fnma(by, y, d_set(1)), rest = less_1 * y;
@@ -41,7 +42,7 @@ static inline void divide_by_length(const vd d[3], vd by, vd q[3]) { divide_each
 /// The kinds of directions, each compiled separately.
 typedef enum unit_target { TO_EYE, TO_POSITION, TO_EACH } unit_target;
 
-/// Computes VD directions; across and down: the camera's axes, for these lanes.
+/// Computes VD directions; across and down: the camera's arrays, at these lanes.
 INNER void unit_lanes(const glint_unit_args *args, const unit_target target, const double *across, const double *down,
                       size_t at)
 {

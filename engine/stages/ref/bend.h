@@ -1,6 +1,6 @@
 // The reference of bend.
 
-/// The ray that sees a hit: distance of the hit along it, and the ray's slopes.
+/// The ray that sees a hit: the distance of the hit along the ray, and the ray's slopes.
 typedef struct bent_ray {
     double direction[3], moved[3], turned[3], far;
 } bent_ray;

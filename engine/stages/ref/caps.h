@@ -14,11 +14,11 @@ static REAL NAME(angle_of)(REAL y, REAL x)
 
 typedef struct NAME(cap) {
     NAME(vec3) direction;
-    REAL sine, cosine; ///< of half its radius
+    REAL sine, cosine; ///< sine and cosine of half the cap's angular radius
 } NAME(cap);
 
-/// Returns the cap of a ball of that radius, at `offset` from the point; `power`: squared distance minus squared
-/// radius.
+/// Returns the cap that a ball covers as seen from a point. offset: from the point to the ball's centre; power:
+/// squared distance minus squared radius.
 static NAME(cap) NAME(cap_of)(NAME(vec3) offset, REAL radius, REAL power)
 {
     REAL distance = NAME(square_root)(NAME(length2)(offset));
@@ -53,7 +53,7 @@ static REAL NAME(covered_part)(NAME(cap) s, NAME(cap) a)
     return NAME(min)(NAME(max)(lens, 0), 1);
 }
 
-/// Returns the visible share of the light from a point past a primitive.
+/// Returns the share of the light that a point sees past a primitive.
 static REAL NAME(visible_share)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) point, NAME(vec3) l,
                                 bool own)
 {
@@ -86,7 +86,7 @@ static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)
     REAL visible = 1;
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (!((REAL)(args->light_sample[0]->radius * args->scale) < NAME(square_root)(NAME(length2)(l))))
-        return 1; // inside the light
+        return 1; // the point is inside the light
     for (uint32_t k = 0; k < args->geometry->prim_count; k++) {
         const glint_prim *prim = &args->geometry->prims[k];
         bool own = args->prim[i] == k;

@@ -1,6 +1,7 @@
 // The reference of cast and scan conversion: included by ref/real.h for each type of real.
 
-/// Returns the hybrid discriminant: from far away by the distance of the line from the centre, close by as b^2 - a c.
+/// Returns the hybrid discriminant: computed from the distance between line and centre if the origin is far away, as
+/// b^2 - a c if it is close.
 static REAL NAME(discriminant)(NAME(vec3) f, NAME(vec3) direction, REAL a, REAL b, REAL c, REAL r2)
 {
     bool near = b * b < a * r2;
@@ -21,7 +22,8 @@ static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const gli
     return disc >= 0 && t > 0 ? t : 0;
 }
 
-/// Returns the height of a point over a plane. For a point on some surface, it is 0 if it is within rounding.
+/// Returns the height of a point over a plane. For a point on some surface, a height within the rounding error is
+/// returned as 0.
 static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) point, bool on_surface)
 {
     NAME(vec3) n = NAME(rounded)(prim->normal), q = NAME(sub)(point, NAME(rounded)(prim->center));
@@ -30,7 +32,7 @@ static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) point, bool on_s
     return on_surface && prim->normal[3] > 0 ? NAME(zero_within)(h, NAME(ON_FACE) * (sizes + (REAL)prim->normal[3])) : h;
 }
 
-/// Returns the distance at which a ray hits a plane, h being the height of its origin; 0: a miss.
+/// Returns the distance at which a ray hits a plane; 0: a miss. h: the height of the ray's origin over the plane.
 static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 {
     REAL nd = NAME(dot)(NAME(rounded)(prim->normal), direction);
@@ -40,7 +42,7 @@ static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 
 #include "engine/stages/ref/combined.h"
 
-/// Likewise for any primitive except a combined solid.
+/// Returns the distance at which a ray hits any primitive except a combined solid; 0: a miss.
 static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
                          NAME(vec3) direction, bool on_surface)
 {
@@ -54,8 +56,8 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
     return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
 
-/// Returns whether ray i starts on the primitive, or on a triangle that it has not certainly left when it reaches
-/// this one's plane; then *t is the distance of the hit, or 0.
+/// Returns whether ray i starts on the primitive, or starts on another triangle whose plane it may not have left when
+/// it reaches this triangle's plane. If so, *t is the distance of the hit, or 0.
 static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                          uint32_t i, REAL *t)
 {
@@ -87,7 +89,8 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     return true;
 }
 
-/// Returns t where ray i hits a primitive; 0: a miss. *hit_prim: the primitive. eye: no ray starts on a surface.
+/// Returns t where ray i hits a primitive; 0: a miss. *hit_prim: the primitive. eye: whether the rays start at the
+/// eye, so that no ray starts on a surface.
 static REAL NAME(hit_t)(const glint_cast_args *args, bool eye, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                         uint32_t i, uint32_t *hit_prim)
 {
@@ -169,7 +172,7 @@ static void NAME(raster)(const glint_raster_args *args)
     }
 }
 
-/// The reference only rules a tile out if there are no primitives.
+/// Returns whether a ray can hit anything: always true in the reference if there are primitives.
 static bool NAME(in_sight)(const glint_cast_args *args) { return args->geometry->prim_count > 0; }
 
 static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->camera->eye); }

@@ -31,7 +31,7 @@ static NAME(stretch) NAME(within_part)(const glint_geometry_table *geometry, con
     return p.hit ? (NAME(stretch)) { p.in.t, p.out.t } : NAME(nowhere)();
 }
 
-/// Returns the same for a ray that starts on the part: inside up to its other side, or nowhere.
+/// Returns the interval of a ray that starts on the part: up to the part's other side, or empty.
 static NAME(stretch) NAME(from_part)(const glint_geometry_table *geometry, const glint_prim *part, NAME(vec3) origin,
                                      NAME(vec3) direction, bool inward)
 {
@@ -61,7 +61,7 @@ static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint
 {
     const glint_prim *part = &geometry->prims[index];
     if (part->kind == GLINT_PRIM_HULL)
-        return NAME(nowhere)(); // it can have many intervals: see ref/hull.h
+        return NAME(nowhere)(); // a mesh can have many intervals: see ref/hull.h
     if (part->kind == GLINT_PRIM_SOLID && part->face)
         return NAME(within_torus)(geometry, part, origin, direction,
                                   start.on == index || start.on == (part->face == 1 ? index + 1 : index - 1), start.inward);
@@ -69,10 +69,10 @@ static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint
                              : NAME(within_part)(geometry, part, origin, direction);
 }
 
-/// The state of a set next to a position on a ray.
+/// Whether the ray is inside a set just before and just after a position on the ray.
 typedef struct NAME(change) {
-    bool before, after; ///< whether the ray is inside
-    uint32_t part; ///< the part on whose surface the change is, if there is one
+    bool before, after; ///< the ray is inside just before the position, and just after it
+    uint32_t part; ///< if the ray enters or leaves the set there: the part on whose surface it does
 } NAME(change);
 
 static NAME(change) NAME(combine)(uint8_t operation, NAME(change) a, NAME(change) b)
@@ -93,7 +93,7 @@ static NAME(change) NAME(combine)(uint8_t operation, NAME(change) a, NAME(change
     return out;
 }
 
-/// A ray and its combined solid.
+/// A ray and the combined solid that it is tested against.
 typedef struct NAME(passing) {
     const glint_geometry_table *geometry;
     const glint_combined *whole;
@@ -144,8 +144,8 @@ static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32
     *hit_prim = change.part;
 }
 
-/// Returns the distance at which a ray hits a combined solid; 0: a miss. *hit_prim: the part, or its triangle; an index
-/// in prims.
+/// Returns the distance at which a ray hits a combined solid; 0: a miss. *hit_prim: the index in prims of the part,
+/// or of the part's triangle.
 static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
                              NAME(vec3) direction, NAME(start) start, uint32_t *hit_prim)
 {
@@ -163,7 +163,7 @@ static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_p
         for (uint32_t k = 0; k < geometry->hulls[part->item].count; k++)
             if (NAME(hull_crossing)(geometry, part, k, origin, direction, start, &t))
                 NAME(consider)(&ray, t, &best, hit_prim);
-        NAME(consider)(&ray, (REAL)GLINT_LEAST_T, &best, hit_prim); // for rays that start on it
+        NAME(consider)(&ray, (REAL)GLINT_LEAST_T, &best, hit_prim); // for rays that start on the solid
     }
     return best < INFINITY ? best : 0;
 }

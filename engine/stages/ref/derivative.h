@@ -8,7 +8,7 @@ static glint_dual dual_dot(const glint_dual a[3], const glint_dual b[3])
     return dual_add(dual_add(dual_mul(a[0], b[0]), dual_mul(a[1], b[1])), dual_mul(a[2], b[2]));
 }
 
-/// Returns x^s for x 0 .. 1.
+/// Returns x^s for x in 0 .. 1.
 static glint_dual dual_power(glint_dual x, glint_dual s)
 {
     if (!(x.value > 0))
@@ -17,7 +17,7 @@ static glint_dual dual_power(glint_dual x, glint_dual s)
     return dual(y, y * ((s.value / base) * x.slope + (0x1.62e42fefa39efp-1 * log2) * s.slope));
 }
 
-/// A light at a lane.
+/// The light that arrives at a lane.
 typedef struct dual_shine {
     glint_dual direction[3], cosine, distance, weight;
     bool weighs;
@@ -40,7 +40,7 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
     return falls ? dual_mul(step, dual_power(c, light->exponent)) : step;
 }
 
-/// Computes the direction to a light at a position, not normalised yet.
+/// Computes the direction from a point to a light with a position, before normalisation.
 static void add_distance(const glint_derivative_source *source, dual_shine *s, int i)
 {
     const glint_dual length2 = dual_dot(s->direction, s->direction);

@@ -1,4 +1,4 @@
-// estimate, range and differ, one number and one pair at a time.
+// The reference of estimate, range and differ, one number or one pair at a time.
 
 static void estimate(const glint_estimate_args *args)
 {
@@ -22,7 +22,7 @@ static void range(const glint_range_args *args, float out[2])
     }
 }
 
-/// Compares pixel i of one line and pixel k of another, as bit `bit`.
+/// Compares pixel i of one line and pixel k of another, and stores the result in bit `bit`.
 static void differ_pair(const glint_differ_args *args, const float *const *p, uint32_t i, const float *const *q, uint32_t k,
                         uint32_t bit, uint32_t *sure, uint32_t *undecided)
 {

@@ -1,10 +1,10 @@
 // The reference of closed meshes that are parts of combined solids; included by ref/combined.h. It follows stages.h
 // line by line.
 
-/// Returns how the triangle turns around a ray, seen along it: +-1 if the ray passes through it, otherwise 0. A ray
-/// through an edge or corner is treated as if shifted along the two perpendicular axes, along the second infinitely
-/// more than along the first. So it passes through exactly one of the triangles that share the edge or corner, or
-/// none.
+/// Returns the orientation of the triangle as seen along a ray: 1 or -1 if the ray passes through the triangle,
+/// otherwise 0. A ray through an edge or corner is treated as if it were shifted along the two perpendicular axes,
+/// along the second infinitely more than along the first. So the ray passes through exactly one of the triangles that
+/// share the edge or corner, or none.
 static int NAME(orientation)(const NAME(vec3) corner[3], NAME(vec3) d)
 {
     int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3, orientation = 0;
@@ -42,8 +42,8 @@ static bool NAME(begins_on)(const glint_geometry_table *table, const glint_prim 
            NAME(in_plane)(NAME(part)(&plane_of, prim, direction), prim, origin, on_surface);
 }
 
-/// Returns how the ray crosses triangle k of the mesh: 1: out, -1: in, 0: not; *t: where, within the triangle's own
-/// depth.
+/// Returns how the ray crosses triangle k of the mesh: 1: it leaves, -1: it enters, 0: no crossing; *t: the distance
+/// of the crossing, within the triangle's range of depth.
 static int NAME(crossing_sign)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
                                NAME(vec3) direction, REAL *t)
 {
@@ -64,8 +64,8 @@ static int NAME(crossing_sign)(const glint_geometry_table *table, const glint_pr
     return part->inverted ? -orientation : orientation;
 }
 
-/// Returns the same for crossings ahead of the ray's origin, without the triangle that it starts on, and without
-/// others whose plane it starts in.
+/// Returns the same for crossings ahead of the ray's origin, without the triangle that the ray starts on, and without
+/// other triangles in whose plane it starts.
 static int NAME(hull_crossing)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
                           NAME(vec3) direction, NAME(start) start, REAL *t)
 {
@@ -79,8 +79,9 @@ static int NAME(hull_crossing)(const glint_geometry_table *table, const glint_pr
 }
 
 /// For a ray that starts on the mesh, it is known whether it goes inside. If the crossings ahead disagree, an exit or
-/// entry at the origin is added. Returns its direction, times the number of crossings that are needed. *triangle: the
-/// first triangle that the ray starts on and crosses in that direction, or the one that it starts on.
+/// entry at the origin is added. Returns the direction of the added crossing, times the number of crossings that are
+/// needed. *triangle: the first triangle that the ray crosses in that direction at its origin; if there is none, the
+/// triangle that the ray starts on.
 static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const glint_prim *part, NAME(vec3) origin,
                                    NAME(vec3) direction, NAME(start) start, uint32_t *triangle)
 {
@@ -106,10 +107,11 @@ static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const
     return winding;
 }
 
-/// The state of the mesh next to a point on the ray: inside if there are more exits than entries ahead.
+/// Whether the ray is inside the mesh just before and just after a point: it is inside if there are more exits than
+/// entries ahead.
 typedef struct NAME(hull_change) {
     bool before, after;
-    uint32_t triangle; ///< the first of the triangles that are crossed there in the direction of the change
+    uint32_t triangle; ///< the first triangle that the ray crosses there in the direction of the change
 } NAME(hull_change);
 
 static void NAME(note_crossing)(int winding, bool here, bool later, uint32_t triangle, int remaining[2],

@@ -32,7 +32,7 @@ static bool NAME(is_cone)(const glint_light_sample *light_sample)
     return light_sample && light_sample->emission == GLINT_EMIT_CONE;
 }
 
-/// Returns sample i's own position in the cone in which it sees the ball.
+/// Returns the position for lane i in the cone in which the lane's point sees the ball.
 static glint_cone_sample NAME(in_own_cone)(const glint_light_sample *light_sample, double scale,
                                            const void *const point[3], const void *const normal[3], uint32_t i)
 {
@@ -80,7 +80,7 @@ static float NAME(cone)(const glint_spot *spot, NAME(vec3) l)
     return step * highlight_strength(spot->exponent, log2_of((float)c, (float)(c - 1)));
 }
 
-/// Returns the cosine at the lamp times the distance: positive if the sample emits towards the point.
+/// Returns the cosine at the light's surface times the distance: positive if the sample emits towards the point.
 static REAL NAME(light_sample_cosine)(const glint_light_sample *light_sample, NAME(vec3) l, uint32_t i)
 {
     REAL m = -NAME(dot)(NAME(lane_of)(light_sample->normal, i), l);

@@ -1,4 +1,4 @@
-// The reference of view and facet, for one REAL; included by ref.c after ref/real.h.
+// The reference of view and facet, for one type of real; included by ref.c after ref/real.h.
 
 static void NAME(view)(const glint_view_args *args)
 {

@@ -22,7 +22,7 @@ static bool NAME(plane_blocks)(const glint_prim *prim, int side, NAME(vec3) poin
     return (side > 0 && h < 0) || (side < 0 && h > 0);
 }
 
-/// Returns whether the primitive blocks lane i. `position`: of the light for this lane, in double.
+/// Returns whether the primitive blocks lane i. `position`: the light's position for this lane, in double.
 static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *prim, const double position[3],
                               uint32_t i)
 {
@@ -73,7 +73,7 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uin
         args->unoccluded[s][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
-/// The reference tests and counts every lit lane, even if the whole light could be settled at once.
+/// The reference tests and counts every lit lane, even where one test could decide the whole light.
 #include "engine/stages/ref/caps.h"
 
 static void NAME(occlude)(const glint_occlude_args *args)

@@ -1,4 +1,4 @@
-// Noise, cells, hash, parity and texels, a lane at a time. Included by ref/program.h.
+// The reference of noise, cells, hash, parity and texels, a lane at a time. Included by ref/program.h.
 
 // ---- the hash ----------------------------------------------------------------------------------------------------
 
@@ -17,7 +17,7 @@ static uint32_t hash_of_cube(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
 /// Returns an integer modulo 2^32; undefined beyond 2^51, and for NaN.
 static uint32_t word_of(double whole) { return (uint32_t)bits_of_double(whole + GLINT_ROUNDER_DOUBLE); }
 
-/// Returns the bits of x, with -0 and every NaN as 0.
+/// Returns the bits of x, after replacing -0 and every NaN by 0.
 static uint64_t canonical_bits(double x) { return x == x ? bits_of_double(x + 0.0) : 0; }
 
 static double op_hash(double x, double y, double z)
@@ -72,7 +72,7 @@ static double between_corners(const double at[8], const double f[3])
     return between_two(f[2], near, far);
 }
 
-/// Returns the contribution of a step along one axis, interpolated along the other two.
+/// Returns the contribution of a step along one axis to the slope, interpolated along the other two axes.
 static double across_corners(const double at[8], const double f[3], int axis)
 {
     const int step = 1 << axis, a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
@@ -112,7 +112,8 @@ static double op_noise(double x, double y, double z, uint32_t seed, double *slop
 
 // ---- cells -------------------------------------------------------------------------------------------------------
 
-/// Returns the vector from the point to the point of a cube. `x`: from the point to the cube's corner.
+/// Computes the vector from the position to the feature point of a cube. x: from the position to the cube's lower
+/// corner.
 static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
 {
     static const uint32_t factor[3] = { GLINT_HASH_B, GLINT_HASH_C, GLINT_HASH_X };
@@ -121,8 +122,8 @@ static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
         d[k] = x[k] + (double)(uint32_t)product(h, factor[k]) * 0x1p-32;
 }
 
-/// Computes the two nearest feature points, of all cubes that may have them. Of equal distances the first one counts,
-/// in the order from the point's own cube outwards.
+/// Computes the two nearest feature points of all cubes in which they may be. If distances are equal, the first point
+/// counts, in the order from the position's own cube outwards.
 static void op_cell(const double p[3], double *distance, double *slope)
 {
     double d2[2] = { INFINITY, INFINITY }, to[2][3] = { { NAN, NAN, NAN }, { NAN, NAN, NAN } };
@@ -184,7 +185,7 @@ static void neighbours(bool repeat, double x, uint32_t n, uint32_t at[2])
     at[1] = first + 1 < n ? (uint32_t)(first + 1) : repeat ? 0 : n - 1;
 }
 
-/// Computes colour and derivatives by u and v, of one level, each unless NULL.
+/// Computes, for one level, the colour and the derivatives with respect to u and v; NULL: not wanted.
 static void texel_of_level(const glint_texture_table *texture, uint32_t level, double u, double v, double color[4],
                            double *slope)
 {

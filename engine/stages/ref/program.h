@@ -1,4 +1,4 @@
-// The stage `program`, a lane at a time. Included by ref.c.
+// The reference of the stage `program`, a lane at a time. Included by ref.c.
 
 static double horner(const double *c, int count, double x)
 {
@@ -33,7 +33,7 @@ static double op_round(double x)
     return copysign(whole, x);
 }
 
-/// As luai_nummod of Lua 5.4; fmod is exact.
+/// Returns the same as luai_nummod of Lua 5.4; fmod is exact.
 static double op_mod(double a, double b)
 {
     double m = fmod(a, b);
@@ -73,7 +73,7 @@ static double op_sine(double x, unsigned quarter)
     return quadrant & 2 ? -y : y;
 }
 
-/// Returns 2^y. The power is applied in two halves, so that small results can be subnormal.
+/// Returns 2^y. The power of two is applied in two factors, so that small results can be subnormal.
 static double op_exp2(double y)
 {
     static const double series[] = GLINT_POWER_OF_2;
@@ -124,7 +124,7 @@ static double op_atan2(double y, double x)
     static const double arc[] = GLINT_ARC_TANGENT;
     double ax = fabs(x), ay = fabs(y);
     double low = ax < ay ? ax : ay, high = ax < ay ? ay : ax;
-    double t = low == high ? 1 : low / high; // both infinite: 1
+    double t = low == high ? 1 : low / high; // 1 also if both are infinite
     if (high == 0)
         t = 0;
     bool upper = t > GLINT_TAN_PI_8;
@@ -145,14 +145,14 @@ static double op_acos(double x)
     static const double arc[] = GLINT_ARC_SINE;
     double size = fabs(x);
     bool middle = size <= 0.5;
-    double t = middle ? x : sqrt(0.5 * (1 - size)); // NaN beyond 1
+    double t = middle ? x : sqrt(0.5 * (1 - size)); // NaN if |x| > 1
     double angle = t * HORNER(arc, t * t);
     if (middle)
         return GLINT_PI_2 - angle;
     return x < 0 ? GLINT_PI_1 - 2 * angle : 2 * angle;
 }
 
-/// S of shade, rounded to float as there.
+/// Returns S of the stage shade, rounded to float as there.
 static double op_highlight(double x, double s)
 {
     if (!(x >= 0x1p-126))

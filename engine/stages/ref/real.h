@@ -59,7 +59,7 @@ static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
 
 // ---- camera ------------------------------------------------------------------------------------------------------
 
-/// Stores a column's or a row's part of a direction.
+/// Stores the vector of a column or of a row, one of the two summands of a direction.
 static void NAME(store_part)(void *parts, uint32_t group, uint32_t lane, NAME(vec3) v)
 {
     REAL *at = (REAL *)parts + group * 3 * GLINT_GROUP + lane;
@@ -112,7 +112,7 @@ static void NAME(camera)(const glint_camera_args *args)
         NAME(camera_sample)(args, i);
 }
 
-/// Returns the direction of ray i: of the camera, or from arrays.
+/// Returns the direction of ray i, from the camera or from arrays.
 static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void *const direction[3], uint32_t i)
 {
     if (!camera)
@@ -129,7 +129,8 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
 
 // ---- surface -----------------------------------------------------------------------------------------------------
 
-/// Returns the outward normal if f + ts direction cancels too much: from the point of the ray closest to the centre.
+/// Returns the outward normal where f + ts direction loses too many digits to cancellation. It is computed from the
+/// point of the ray closest to the centre.
 static NAME(vec3) NAME(far_normal)(NAME(vec3) f, NAME(vec3) direction, REAL r2)
 {
     REAL a = NAME(length2)(direction);
@@ -274,8 +275,8 @@ static void NAME(surface)(const glint_surface_args *args)
 
 // ---- bounce ------------------------------------------------------------------------------------------------------
 
-/// Returns the reflected share of unpolarised light for a dielectric; here, beyond: cosines of the angles on both
-/// sides.
+/// Returns the reflected share of unpolarised light for a dielectric; here, beyond: cosines of the angles on the
+/// ray's side and on the far side.
 static REAL NAME(fresnel)(REAL ratio, REAL here, REAL beyond)
 {
     REAL across = (ratio * here - beyond) / (ratio * here + beyond);

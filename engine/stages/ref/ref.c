@@ -18,7 +18,7 @@
 
 // ---- elementary functions ----------------------------------------------------------------------------------------
 
-/// log2 of (1 + f) 2^e for f in [sqrt(1/2) - 1, sqrt(2) - 1].
+/// Returns log2 of (1 + f) 2^e for f in [sqrt(1/2) - 1, sqrt(2) - 1].
 static float log2_of_parts(float f, int e)
 {
     static const float c[10] = { GLINT_LOG2_C0, GLINT_LOG2_C1, GLINT_LOG2_C2, GLINT_LOG2_C3, GLINT_LOG2_C4,
@@ -43,7 +43,7 @@ static float log2_of(float x, float less_1)
     return m >= (float)GLINT_SQRT2 ? log2_of_parts(0.5f * m - 1, e + 1) : log2_of_parts(m - 1, e);
 }
 
-/// 2^y for y in [-126, 0].
+/// Returns 2^y for y in [-126, 0].
 static float exp2_of(float y)
 {
     static const float d[7] = { GLINT_EXP2_D0, GLINT_EXP2_D1, GLINT_EXP2_D2, GLINT_EXP2_D3,
@@ -59,7 +59,7 @@ static float exp2_of(float y)
     return p * power;
 }
 
-/// Counts one decision about a ray and a primitive; `tests` may be NULL.
+/// Adds 1 to the number of decided pairs of a ray and a primitive; `tests` may be NULL.
 static void note_test(uint64_t *tests)
 {
     if (tests)
@@ -77,7 +77,7 @@ static float highlight_strength(float shininess, float log2_specular)
 
 typedef struct exact_pair {
     double value, error;
-} exact_pair; ///< a number as value + error; value is the rounded number
+} exact_pair; ///< an exact number, as value + error; value is the rounded number
 
 static exact_pair two_sum(double a, double b)
 {
@@ -92,7 +92,7 @@ static double upper_half(double x)
     return y - (y - x);
 }
 
-/// Returns x^2 with its error, by Dekker's product: the partial products are exact.
+/// Returns x^2 with its rounding error, by Dekker's product: the partial products are exact.
 static exact_pair two_square(double x)
 {
     double p = x * x, upper = upper_half(x), lower = x - upper;
@@ -100,7 +100,7 @@ static exact_pair two_square(double x)
     return (exact_pair) { p, error };
 }
 
-/// |f|^2 - (radius scale)^2, rounded once.
+/// Returns |f|^2 - (radius scale)^2, rounded once.
 static double exact_c_double(double fx, double fy, double fz, const glint_prim *prim)
 {
     exact_pair p0 = two_square(fx), p1 = two_square(fy), p2 = two_square(fz);
@@ -177,8 +177,8 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
     return solid->form == GLINT_FORM_CONE && x * x + y * y < z * z && between;
 }
 
-/// Returns 1 if the light is in front of a plane or outside a sphere, -1 if behind or inside, 0 if on it. In double
-/// for any precision.
+/// Returns 1 if the light is in front of a plane or outside a sphere, -1 if behind or inside, 0 if on it. The
+/// arithmetic is double for both precisions.
 static int light_side(bool directional, const double position[3], const glint_prim *prim, const glint_solid *solids)
 {
     if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_COMBINED)

@@ -1,4 +1,4 @@
-// The reference of scatter, for one REAL; included by ref.c after ref/real.h.
+// The reference of scatter, for one type of real; included by ref.c after ref/real.h.
 
 /// Computes sin and cos of `quarters` times pi / 2, for quarters in 0 .. 4.
 static void NAME(turn)(REAL quarters, REAL *sine, REAL *cosine)

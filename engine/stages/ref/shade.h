@@ -1,7 +1,7 @@
 // The specification of shade in plain C: Phong, Blinn-Phong and microfacets, lights added in their order. Contract:
 // stages.h.
 
-/// Returns a material's value at a sample: its own, or that of the plane that replaces it.
+/// Returns a material's value at a sample: the plane's value if a plane replaces it, otherwise the material's own.
 static float number_at(const glint_shade_material *material, unsigned which, float number, const float *plane,
                        uint32_t i)
 {
@@ -10,9 +10,9 @@ static float number_at(const glint_shade_material *material, unsigned which, flo
 
 typedef struct terms {
     double value[GLINT_TERM_COUNT][3];
-} terms; ///< of one sample
+} terms; ///< the terms of one sample
 
-/// Returns Smith's masking for Beckmann's distribution, Lambda times x.
+/// Returns Smith's masking for Beckmann's distribution: x times Lambda at the cosine x.
 static float beckmann_mask(float alpha, float x)
 {
     float s = alpha * sqrtf(max_float(1 - x * x, 0));
@@ -37,12 +37,12 @@ static float beckmann(float alpha, float sine2, float l, float v)
     return (((e / c) / c) * (1 / aa)) * ((0.25f * l) / max_float(d, FLT_MIN));
 }
 
-/// The factors of a light and of those joined to it: w (n.l), w S, and for microfacets w S (1 - v.h)^5.
+/// The factors of a light and of the lights joined to it: w (n.l), w S, and for microfacets w S (1 - v.h)^5.
 typedef struct factors {
     float diffuse, specular, grazing;
 } factors;
 
-/// Adds w S of microfacets. Returns whether there is a half vector.
+/// Adds w S of microfacets. Returns whether the half vector is defined.
 static bool add_facets(const glint_shade_args *args, const glint_shade_light *light, float w, uint32_t i, factors *sum)
 {
     const glint_shade_material *material = &args->materials[args->material[i]];
@@ -85,7 +85,7 @@ static bool add_factors(const glint_shade_args *args, const glint_shade_light *l
 /// Returns a light's contribution to a term, as float; the term is a sum in double.
 static float share_of(float factor, double color) { return factor * (color < FLT_MAX ? (float)color : FLT_MAX); }
 
-/// Returns a reflectance at a sample: the table's value, times the plane's.
+/// Returns a reflectance at a sample: the table's value times the plane's value.
 static double reflectance(const glint_shade_material *material, unsigned which, double table, const float *plane,
                           uint32_t i, double light)
 {

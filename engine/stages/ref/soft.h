@@ -1,5 +1,5 @@
-// The reference of soft_light, for one REAL; included by ref.c after ref/real.h: light, occlude and shade one after
-// the other.
+// The reference of soft_light, for one type of real; included by ref.c after ref/real.h: light, occlude and shade one
+// after the other.
 
 /// The results of light and occlude for each sample.
 typedef struct NAME(soft_rows) {
@@ -28,7 +28,7 @@ static void NAME(fill_rows)(const glint_soft_args *args, NAME(soft_rows) * rows)
     NAME(occlude)(&occlude);
 }
 
-/// Sums the samples that reach lane i. Returns whether any does.
+/// Sums the samples that reach lane i. Returns whether any sample does.
 static bool NAME(sum_rows)(const glint_soft_args *args, const NAME(soft_rows) * rows, uint32_t i, float *diffuse,
                            float *specular)
 {

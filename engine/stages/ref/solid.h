@@ -2,14 +2,14 @@
 
 typedef struct NAME(crossing) {
     REAL t;
-    bool flat; ///< on a face of the slab
-    REAL face[3]; ///< its outward normal
+    bool flat; ///< the crossing is on a flat face
+    REAL face[3]; ///< the outward normal of that face
 } NAME(crossing);
 
 typedef struct NAME(passage) {
     bool hit;
     NAME(crossing) in, out;
-    bool ends; ///< an open form: the ray leaves through an end of it
+    bool ends; ///< for an open form: the ray leaves through an open end
 } NAME(passage);
 
 static NAME(vec3) NAME(into_unit)(const glint_solid *solid, NAME(vec3) v)
@@ -37,7 +37,7 @@ static REAL NAME(rise)(const glint_face *face, NAME(vec3) direction)
     return NAME(dot)(n, direction);
 }
 
-/// Clips the passage to a slab. faces: the low one and the high one.
+/// Clips the passage to a slab. faces: the low face and the high face.
 static void NAME(pass_slab)(NAME(passage) * p, const glint_face *faces, NAME(vec3) origin, NAME(vec3) direction,
                             int axis)
 {
@@ -226,8 +226,8 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
     return NAME(onto_plane)(&solid->faces[(solid->form == GLINT_FORM_BOX ? 2 * axis : 0) + high], point);
 }
 
-/// Returns whether the torus blocks the segment. own: the segment starts on it; back: and goes inside. inside: the
-/// light is inside.
+/// Returns whether the torus blocks the segment. own: the segment starts on the torus; back: it also goes inside.
+/// inside: the light is inside.
 static bool NAME(torus_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
                                NAME(vec3) point, bool inside, bool own, bool back)
 {
@@ -238,7 +238,7 @@ static bool NAME(torus_blocks)(const glint_occlude_args *args, const glint_prim 
                              back);
 }
 
-/// Returns whether the solid blocks the segment. `own`: the segment starts on it and goes inside.
+/// Returns whether the solid blocks the segment. `own`: the segment starts on the solid and goes inside.
 static bool NAME(solid_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
                                NAME(vec3) point, bool own)
 {

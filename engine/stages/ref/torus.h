@@ -3,11 +3,11 @@
 // A line is p + s u, with u unit and p the point nearest to the centre. The surface is at Q(s) = 0, a quartic without
 // a cubic term. Q' / 4 = s^3 + bend s - lean has up to three roots, the turning points of Q, between which Q is
 // monotonic. So there are four stretches, falling and rising in turn, with at most one root each. A stretch has a
-// root if its ends are on different sides of the surface. The side is decided at points, not by coefficients: by
-// their distance from the circle in the middle of the tube.
+// root if its ends are on different sides of the surface. The side of a point follows from its distance from the
+// circle in the middle of the tube, not from the coefficients of Q.
 
-/// Returns the factor of Q whose sign tells the sides of the torus apart: below 0 inside. *beyond: the other factor,
-/// above 0 everywhere.
+/// Returns the factor of Q that has a different sign inside of the torus (below 0) and outside. *beyond: the other
+/// factor, which is above 0 everywhere.
 static REAL NAME(torus_gap)(NAME(vec3) k, REAL tube, REAL *beyond)
 {
     REAL round = NAME(square_root)(k.x * k.x + k.y * k.y), near = round - 1, far = round + 1, level = k.z * k.z;
@@ -18,15 +18,15 @@ static REAL NAME(torus_gap)(NAME(vec3) k, REAL tube, REAL *beyond)
 typedef struct NAME(torus_line) {
     REAL tube;
     NAME(vec3) p, u;
-    REAL from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
+    REAL from, per, length, begin; ///< t = from + s per, with per = 1 / length; begin: s at t = 0
     REAL reach; ///< there are no roots beyond -reach .. reach
     REAL bend, lean;
     bool near; ///< the line comes near the torus
-    REAL turn[3], gap[3], beyond[3]; ///< in order; if there is only one turning point, the others are at infinity,
-        ///< outside
+    REAL turn[3], gap[3], beyond[3]; ///< s of the turning points, in order, and the factors of torus_gap there; if
+        ///< there is only one turning point, the others are at infinity, outside
     REAL begin_gap;
-    bool on, inward; ///< the ray starts on the surface; if so, it goes inside
-    int stretch; ///< 0 .. 3: where the ray starts
+    bool on, inward; ///< on: the ray starts on the surface; inward: it also goes inside
+    int stretch; ///< the stretch in which the ray starts, 0 .. 3
 } NAME(torus_line);
 
 /// Returns the largest x with x^3 + bend x = lean; lean >= 0.
@@ -61,7 +61,7 @@ static void NAME(find_turns)(NAME(torus_line) * l)
     }
 }
 
-/// Computes where the ray starts. leaves: certainly on the surface.
+/// Computes the stretch in which the ray starts. leaves: the ray certainly starts on the surface.
 static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid, NAME(vec3) f, NAME(vec3) e,
                                  bool leaves, bool inward)
 {
@@ -77,7 +77,8 @@ static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid,
     const REAL *turn = l->inward ? l->turn : l->turn + 1;
     l->stretch = (l->inward ? 0 : 1) + (l->begin < (REAL)0.5 * turn[0] + (REAL)0.5 * turn[1] ? 0 : 2);
     REAL *next =
-        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // on this side, however rounding moved the next turning point
+        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // the ray starts on the correct side, even if rounding has moved
+            // the next turning point
     if (next && l->inward && *next > 0)
         *next = 0;
     if (next && !l->inward && *next <= 0)
@@ -170,7 +171,8 @@ static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
     return t > 0 ? t : (REAL)GLINT_LEAST_T;
 }
 
-/// Returns the distance at which a ray hits a torus; 0: a miss. leaves: the ray starts on it, and goes inside or not.
+/// Returns the distance at which a ray hits a torus; 0: a miss. leaves: the ray starts on the torus; inward: it also
+/// goes inside.
 static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
 {
     if (leaves && !inward && NAME(leaves_torus)(f, e))
@@ -182,9 +184,9 @@ static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, 
     return leaves && inward ? (REAL)GLINT_LEAST_T : 0;
 }
 
-/// Computes the intervals inside: ends[0] to ends[1], and ends[2] to ends[3]. If the ray does not come out in
-/// between, there is one interval, from the first root to the last. -inf: there is no such interval, or the ray
-/// starts inside of it.
+/// Computes the intervals inside the torus, from ends[0] to ends[1] and from ends[2] to ends[3]. A ray that does not
+/// come out in between has one interval, from the first root to the last. -inf: there is no such interval, or the ray
+/// starts inside the interval.
 static void NAME(torus_ends)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward, REAL ends[4])
 {
     NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
@@ -207,8 +209,8 @@ static NAME(vec3) NAME(onto_torus)(REAL tube, NAME(vec3) * k)
     return NAME(vec)(out * x, out * y, up);
 }
 
-/// Returns whether a segment from f crosses the surface before it ends at t = end, inside or outside. leaves: it
-/// starts on the torus, and goes inside or not.
+/// Returns whether a segment from f crosses the surface before it ends at t = end. end_inside: whether that end is
+/// inside. leaves: the segment starts on the torus; inward: it also goes inside.
 static bool NAME(torus_parts)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, REAL end, bool end_inside,
                               bool leaves, bool inward)
 {

@@ -4,7 +4,7 @@ static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v
 
 typedef struct NAME(ray_edges) {
     REAL e[3], dz, depth, sum_of_sizes;
-    REAL low[2], high[2]; ///< of the corners, along each axis
+    REAL low[2], high[2]; ///< smallest and largest coordinate of the corners, along each axis
 } NAME(ray_edges);
 
 static int NAME(main_axis)(NAME(vec3) d)
@@ -63,8 +63,8 @@ static void NAME(relative_corners)(const glint_prim *prim, NAME(vec3) from, doub
         out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
 }
 
-/// Returns the distance at which a ray crosses the plane of a triangle: the plane of its corners, or one that it
-/// shares.
+/// Returns the distance at which a ray crosses the plane of a triangle: the plane of the triangle's corners, or a
+/// plane that it shares with others.
 static REAL NAME(plane_distance)(const glint_geometry_table *table, const glint_prim *prim, NAME(ray_edges) seen,
                                  NAME(vec3) origin, NAME(vec3) direction)
 {
@@ -89,7 +89,7 @@ static NAME(vec3) NAME(flat_normal)(const glint_prim *prim, double scale)
     return NAME(vec)((REAL)(m[0] / length), (REAL)(m[1] / length), (REAL)(m[2] / length));
 }
 
-/// Computes the point, the weights of the corners there, and a bound of the point's rounding error.
+/// Computes the hit point, the weights of the corners there, and an error bound of the point.
 static NAME(vec3) NAME(triangle_point)(const glint_surface_args *args, const glint_prim *prim, NAME(vec3) origin,
                                        NAME(vec3) direction, REAL weight[3], REAL *slack)
 {
@@ -187,7 +187,7 @@ static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_pr
 
 // ---- cast ----
 
-/// Computes the height of a point over a triangle's plane, and its rounding error.
+/// Computes the height of a point over a triangle's plane, and the rounding error of the height.
 static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) at, REAL *rounding)
 {
     NAME(vec3) q = NAME(sub)(at, NAME(rounded)(prim->corner[0]));
@@ -201,8 +201,8 @@ static REAL NAME(spread)(NAME(parted) plane)
     return (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
 }
 
-/// Returns whether a point is in the plane within rounding; on_surface: the point is on some surface, and has the
-/// rounding error of such points.
+/// Returns whether a point is in the plane within rounding; on_surface: whether the point was computed on some
+/// surface, and has the rounding error of such points.
 static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) point, bool on_surface)
 {
     REAL rounding, h = NAME(height)(plane, prim, point, &rounding);
@@ -240,8 +240,8 @@ static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL si
     return false;
 }
 
-/// Returns whether the ray, which starts on triangle `from`, is within rounding in the planes of both triangles; then
-/// *t is where it passes through `prim`, or 0.
+/// Returns whether the ray, which starts on triangle `from`, lies in the planes of both triangles within rounding. If
+/// so, *t is the distance at which it passes through `prim`, or 0.
 static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
                                  NAME(vec3) origin, NAME(vec3) direction, REAL *t)
 {

@@ -52,7 +52,7 @@ static inline fm fm_from_bits(unsigned bits)
 
 static inline vi f_bits(vf x) { return _mm256_castps_si256(x); }
 static inline vf f_from_bits(vi x) { return _mm256_castsi256_ps(x); }
-static inline vi i_from_f(vf x) { return _mm256_cvttps_epi32(x); } // towards 0
+static inline vi i_from_f(vf x) { return _mm256_cvttps_epi32(x); } // rounds towards 0
 static inline vi i_set(uint32_t x) { return _mm256_set1_epi32((int)x); }
 static inline vi i_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
 static inline vi i_sub(vi a, vi b) { return _mm256_sub_epi32(a, b); }
@@ -85,7 +85,8 @@ static inline vf f_by_exponent(const vf table[F_EXPONENTS / VF], vf x)
 {
     const vi exponent = i_shr(f_bits(x), 23);
     const vf low = _mm256_permutevar8x32_ps(table[0], exponent), high = _mm256_permutevar8x32_ps(table[1], exponent);
-    return _mm256_blendv_ps(low, high, f_from_bits(i_shl(f_bits(x), 5))); // bit 3 of the exponent decides
+    return _mm256_blendv_ps(low, high, f_from_bits(i_shl(f_bits(x), 5))); // bit 3 of the exponent selects the half of
+        // the table
 }
 #define f_by_exponent f_by_exponent
 
@@ -176,7 +177,7 @@ static inline vd d_ceil(vd x) { return _mm256_ceil_pd(x); }
 
 static inline vq d_bits(vd x) { return _mm256_castpd_si256(x); }
 static inline vd d_of_bits(vq x) { return _mm256_castsi256_pd(x); }
-/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are those of the integer part.
+/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are the lowest bits of the integer part.
 static inline vq d_floor_bits(vd x) { return d_bits(d_floor(x) + d_set(0x1.8p52)); }
 static inline vq q_set(uint64_t x) { return _mm256_set1_epi64x((long long)x); }
 static inline vq q_add(vq a, vq b) { return _mm256_add_epi64(a, b); }

@@ -6,9 +6,9 @@
 ///   vq: 64-bit integers, as many as vd
 ///   fm, dm: masks of vf and vd
 ///
-/// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
-/// bits in vf. Arithmetic is written with operators. fma appears only in two_prod; in unit, where it gives the bits
-/// of a division; and in the estimate of tone, whose rounding does not affect results.
+/// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: vd holds it as the value of a
+/// double, vf as raw bits. Arithmetic is written with operators. FMA is only used in two_prod; in unit, where it
+/// gives the bits of a division; and in the estimate of tone, whose rounding does not affect results.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -48,7 +48,7 @@ static inline fm fm_from_bits(unsigned bits) { return (fm)bits; }
 
 static inline vi f_bits(vf x) { return _mm512_castps_si512(x); }
 static inline vf f_from_bits(vi x) { return _mm512_castsi512_ps(x); }
-static inline vi i_from_f(vf x) { return _mm512_cvttps_epi32(x); } // towards 0
+static inline vi i_from_f(vf x) { return _mm512_cvttps_epi32(x); } // rounds towards 0
 static inline vi i_set(uint32_t x) { return _mm512_set1_epi32((int)x); }
 static inline vi i_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
 static inline vi i_sub(vi a, vi b) { return _mm512_sub_epi32(a, b); }
@@ -83,7 +83,7 @@ static inline vf f_fma(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
 
 static inline vf f_load_any(const float *p) { return _mm512_loadu_ps(p); }
 
-/// Selects bytes of a where the mask's bytes are 255, of b where they are 0.
+/// Selects the bytes of a where the mask's bytes are 255, and the bytes of b where they are 0.
 static inline vi i_merge(vi mask, vi a, vi b) { return _mm512_ternarylogic_epi32(mask, a, b, 0xca); }
 
 /// Returns the lanes where the bits of a, b or c, as unsigned integers, are above the limit.
@@ -101,7 +101,7 @@ static inline vf f_by_exponent(const vf table[F_EXPONENTS / VF], vf x)
 #define f_by_exponent f_by_exponent
 
 /// Stores pixels, one per lane as red | green << 8 | blue << 16, as rows of four: 12 bytes, `stride` apart. `spill`:
-/// the four bytes after each row may be overwritten.
+/// whether the four bytes after each row may be overwritten.
 static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
 {
     const __m128i bytes = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
@@ -158,7 +158,7 @@ static inline void f_split(vf x, vd out[2])
     out[1] = _mm512_cvtps_pd(_mm512_extractf32x8_ps(x, 1));
 }
 
-/// Stores i into p in the lanes of the mask.
+/// Stores i into p, in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {
     __m256i *to = (__m256i *)p;
@@ -187,7 +187,7 @@ static inline vd d_ceil(vd x) { return _mm512_roundscale_pd(x, _MM_FROUND_TO_POS
 
 static inline vq d_bits(vd x) { return _mm512_castpd_si512(x); }
 static inline vd d_of_bits(vq x) { return _mm512_castsi512_pd(x); }
-/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are those of the integer part.
+/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are the lowest bits of the integer part.
 static inline vq d_floor_bits(vd x)
 {
     return d_bits(_mm512_add_round_pd(x, d_set(0x1.8p52), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
@@ -203,13 +203,13 @@ static inline vq q_xor(vq a, vq b) { return _mm512_xor_si512(a, b); }
 /// Returns the 64-bit products of the unsigned lower 32 bits.
 static inline vq q_mul(vq a, vq b) { return _mm512_mul_epu32(a, b); }
 
-/// Returns the lanes in which the given bits, of the lower 32, equal those of `value`.
+/// Returns the lanes in which the bits that are set in `bits` (32 bits) have the values that they have in `value`.
 static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 {
     return value ? _mm512_cmpeq_epi64_mask(q_and(x, q_set(bits)), q_set(value)) : _mm512_testn_epi64_mask(x, q_set(bits));
 }
 
-/// Returns the lanes in which the bit, one of the lower 32, is set.
+/// Returns the lanes in which `bit`, one of the lower 32 bits, is set.
 static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q_set(bit)); }
 
 #define GLINT_D_FUSED 1 ///< the following three functions exist

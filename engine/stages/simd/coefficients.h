@@ -6,8 +6,9 @@
 #define GLINT_SQRT2 0x1.6a09e667f3bcdp+0
 #define GLINT_SQRT1_2 0x1.6a09e667f3bcdp-1
 #define GLINT_LOG2_E 1.442695f
-#define GLINT_EXP2_LEAST (-126.0f) ///< below it a distribution is 0, however high its peak
-#define GLINT_EXP2_LOWEST (-40.0f) ///< below it a highlight is 0, as it could not change a 16-bit pixel value
+#define GLINT_EXP2_LEAST (-126.0f) ///< below this exponent, a distribution is 0, however high its peak is
+#define GLINT_EXP2_LOWEST (-40.0f) ///< below this exponent, a highlight is 0, because it could not change a 16-bit
+    ///< pixel value
 
 // log2(1 + f) / f for f in [sqrt(1/2) - 1, sqrt(2) - 1]
 #define GLINT_LOG2_C0 0x1.715476p+0f
@@ -30,8 +31,8 @@
 #define GLINT_EXP2_D5 0x1.5f48c0p-10f
 #define GLINT_EXP2_D6 0x1.444000p-13f
 
-// sin(x) = x + x z (S1 + ...) and cos(x) = 1 + z (C1 + ...) with z = x^2, for |x| <= pi/4, by Taylor: maximum error
-// 2e-9
+// sin(x) = x + x z (S1 + ...) and cos(x) = 1 + z (C1 + ...) with z = x^2, for |x| <= pi/4: Taylor series, maximum
+// error 2e-9
 #define GLINT_HALF_PI 0x1.921fb54442d18p+0
 #define GLINT_SIN_1 (-1.0 / 6)
 #define GLINT_SIN_2 (1.0 / 120)
@@ -42,7 +43,7 @@
 #define GLINT_COS_3 (-1.0 / 720)
 #define GLINT_COS_4 (1.0 / 40320)
 #define GLINT_COS_5 (-1.0 / 3628800)
-#define GLINT_ROUNDER_DOUBLE 0x1.8p52 ///< adding and then subtracting it rounds to an integer
+#define GLINT_ROUNDER_DOUBLE 0x1.8p52 ///< adding and then subtracting this number rounds to an integer
 #define GLINT_ROUNDER_FLOAT 0x1.8p23
 
 #endif

@@ -5,7 +5,7 @@
 #include "engine/stages/simd/coefficients.h"
 #include "engine/stages/simd/vector.h"
 
-/// For the innermost loops: inlined, however large the file is.
+/// For functions of the innermost loops, which must be inlined, however large the file is.
 #define INNER static __attribute__((always_inline)) inline
 
 static inline vf f_exponent(vf x)
@@ -15,7 +15,7 @@ static inline vf f_exponent(vf x)
 
 static inline vf f_mantissa(vf x) { return f_from_bits(i_or(i_and(f_bits(x), i_set(0x007fffff)), i_set(0x3f800000))); }
 
-/// log2 of m 2^e, m = 1 + f in [sqrt(1/2), sqrt(2)).
+/// Returns log2 of m 2^e, with m = 1 + f in [sqrt(1/2), sqrt(2)).
 static inline vf f_log2_of_parts(vf e, vf f)
 {
     vf p = f_set(GLINT_LOG2_C9);
@@ -31,7 +31,7 @@ static inline vf f_log2_of_parts(vf e, vf f)
     return e + f * p;
 }
 
-/// Returns log2 of x in [2^-126, 1]; `less_1`: x - 1, computed from a more accurate x if possible.
+/// Returns log2 of x in [2^-126, 1]; `less_1`: x - 1, which the caller computes from a more accurate x if possible.
 static inline vf f_log2(vf x, vf less_1)
 {
     const fm near_1 = f_le(f_set((float)GLINT_SQRT1_2), x);
@@ -69,7 +69,7 @@ static inline vd d_two_sum(vd a, vd b, vd *error)
     return s;
 }
 
-// Masks of a whole group, as bits.
+// Masks of a whole group, one bit per lane.
 
 static inline unsigned lanes_equal(const uint32_t *index, uint32_t value)
 {
@@ -95,7 +95,7 @@ static inline unsigned lanes_with(const uint32_t *flags, uint32_t flag)
     return bits;
 }
 
-/// Stores `value` into `to` where the bit is set.
+/// Stores `value` into `to` in the lanes whose bit is set.
 static inline void lanes_put(uint32_t *to, unsigned bits, uint32_t value)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {

@@ -1,6 +1,6 @@
-/// The functions of the kernels that a frame calls, by their names in `glint_stages`. The object file of a stage
-/// defines its own, and the table of an instruction set has all. Their symbols contain the instruction set:
-/// glint_avx2_tone, glint_avx2_camera_f64.
+/// The kernel functions that a frame calls, by their names in `glint_stages`. The object file of a stage defines the
+/// entries of that stage, and the table of an instruction set has all entries. The symbol of an entry contains the
+/// instruction set: glint_avx2_tone, glint_avx2_camera_f64.
 #ifndef GLINT_ENTRIES_H
 #define GLINT_ENTRIES_H
 

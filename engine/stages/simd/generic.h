@@ -1,6 +1,6 @@
 /// The vector vocabulary in the vector extensions of GCC and clang, for any little-endian processor: ARM's NEON (with
-/// the few intrinsics of simd/neon.h), WebAssembly (with those of simd/wasm.h), RISC-V's V, x86's SSE2. simd/avx512.h
-/// explains the words.
+/// the few intrinsics of simd/neon.h), WebAssembly (with the intrinsics of simd/wasm.h), RISC-V's V, x86's SSE2.
+/// simd/avx512.h explains the words.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -49,7 +49,7 @@ static inline vd d_load_f(const float *p)
 /// Joins two vectors of doubles, rounded to float.
 static inline vf f_join(vd low, vd high)
 {
-    // not (float)low[0] and so on: after f_split, GCC 12 would use the numbers from before the rounding
+    // written without (float)low[0] and so on, because GCC 12 would then use the unrounded numbers after f_split
     const glint_f32x2 x = __builtin_convertvector(low, glint_f32x2), y = __builtin_convertvector(high, glint_f32x2);
     return (vf) { x[0], x[1], y[0], y[1] };
 }
@@ -132,7 +132,7 @@ static inline fm fm_from_bits(unsigned bits)
 
 static inline vi f_bits(vf x) { return (vi)x; }
 static inline vf f_from_bits(vi x) { return (vf)x; }
-static inline vi i_from_f(vf x) { return (vi)__builtin_convertvector(x, fm); } // towards 0
+static inline vi i_from_f(vf x) { return (vi)__builtin_convertvector(x, fm); } // rounds towards 0
 static inline vi i_set(uint32_t x) { return (vi) { x, x, x, x }; }
 static inline vi i_add(vi a, vi b) { return a + b; }
 static inline vi i_sub(vi a, vi b) { return a - b; }
@@ -183,7 +183,7 @@ static inline vd d_copysign(vd size, vd sign) { return (vd)(((dm)size & INT64_MA
 
 static inline vq d_bits(vd x) { return (vq)x; }
 static inline vd d_of_bits(vq x) { return (vd)x; }
-/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are those of the integer part.
+/// Returns the bits of floor(x) + 0x1.8p52: for |x| < 2^51, the lowest bits are the lowest bits of the integer part.
 static inline vq d_floor_bits(vd x) { return d_bits(d_floor(x) + d_set(0x1.8p52)); }
 static inline vq q_set(uint64_t x) { return (vq) { x, x }; }
 static inline vq q_add(vq a, vq b) { return a + b; }
@@ -203,7 +203,8 @@ static inline vd d_two_prod(vd a, vd b, vd *error)
     return p;
 }
 #else
-/// Dekker's product (1971), with Veltkamp's splitting: the same bits as with FMA, except after over- or underflow.
+/// Returns a * b and the rounding error, by Dekker's product (1971) with Veltkamp's splitting: the same bits as with
+/// FMA, except after overflow or underflow.
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {
     const vd splitter = d_set(0x1p27 + 1);

@@ -32,7 +32,8 @@
 #define r_put_index d_put_index
 #define r_pick d_pick
 #define r_pack d_pack
-#define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
+#define GLINT_PARALLEL 1e-60 // a ray is parallel to a plane if the squared sine of the angle between them is below
+    // this
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
 #define GLINT_ON_FACE GLINT_ON_FACE_DOUBLE
 #define GLINT_ROUNDER GLINT_ROUNDER_DOUBLE
@@ -72,7 +73,7 @@
 #endif
 
 /// Loads VR floats as real; load_narrow loads VF reals as floats. A wide load of data from narrower stores would
-/// stall until these are in the cache.
+/// stall until the stores are in the cache.
 static inline vr R(load_wide)(const float *p)
 {
 #if GLINT_REAL == 64

@@ -1,12 +1,12 @@
-/// The only reader of the processor's flags. The Makefile defines GLINT_KERNEL_x for each instruction set that it
-/// compiles.
+/// The only file that reads the processor's flags. The Makefile defines GLINT_KERNEL_x for each instruction set that
+/// it compiles.
 #include "engine/stages/stages.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 const glint_stages *const glint_stages_built[] = {
-#ifndef __wasm__ // no web page can ask for the reference, and each page would load it
+#ifndef __wasm__ // a web page cannot select the reference, but every page would have to load it
     &glint_stages_ref,
 #endif
 #ifdef GLINT_KERNEL_generic
@@ -37,7 +37,7 @@ bool glint_stages_usable(const glint_stages *stages)
     return stages != NULL;
 }
 
-/// Returns whether some machine has an instruction set of this name.
+/// Returns whether an instruction set of this name exists on any machine.
 static bool is_known(const char *name)
 {
     static const char *const known[] = { "ref", "generic", "avx2", "avx512" };

@@ -1,6 +1,6 @@
 /// The words of simd/generic.h for which WebAssembly has instructions that clang does not use: roots and integer
-/// parts of both lanes, a mask's bits, conversions between float and double, products of 32 bits. Included by
-/// generic.h after its types.
+/// parts of both lanes, the bits of a mask, conversions between float and double, and products of 32-bit integers.
+/// Included by generic.h after its types.
 #ifndef GLINT_SIMD_WASM_H
 #define GLINT_SIMD_WASM_H
 
