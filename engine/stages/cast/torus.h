@@ -333,8 +333,8 @@ static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
     g[2] = up;
 }
 
-/// Returns the segments from f that cross the surface before they end at t = end. l: the lines as along_torus made
-/// them.
+/// Returns the segments from f that cross the surface before they end at t = end. end_inside: segments whose end is
+/// inside. l: the lines as along_torus made them.
 static rm R(torus_parts)(const R(torus_line) * l, const vr f[3], const vr e[3], vr end, rm end_inside,
                          R(torus_start) start)
 {

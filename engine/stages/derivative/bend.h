@@ -1,5 +1,5 @@
-// How fast visible hits on one sphere or plane move. Contract: contract/derivative.h. For one hit on any kind of
-// primitive: bend.c of effects/derivative.
+// Computes how fast visible hits on one sphere or plane move. Contract: contract/derivative.h. For single hits on any
+// kind of primitive, see bend.c of effects/derivative.
 #ifndef GLINT_DERIVATIVE_BEND_H
 #define GLINT_DERIVATIVE_BEND_H
 
@@ -7,8 +7,8 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// The rays of VD hits: their directions, of any length; slopes of origin and direction; distance of the hits along
-/// them.
+/// The rays of VD hits: directions of any length, slopes of origin and direction, and distances of the hits along the
+/// rays.
 typedef struct bent_rays {
     vd direction[3], moved[3], turned[3], far;
 } bent_rays;
@@ -31,7 +31,7 @@ INNER bent_rays see_from_point(const glint_bend_args *args, int i)
     return out;
 }
 
-/// Returns the ray of an orthographic camera, or of one with a lens.
+/// Returns the rays of a camera that is orthographic or has a lens.
 INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int i)
 {
     const glint_derivative_view *view = args->view;
@@ -54,7 +54,7 @@ INNER bent_rays see_along(const glint_bend_args *args, const bool parallel, int 
 }
 
 /// Computes slopes of points, normals and eye vectors, into `out`. The point stays on the tangent plane, which moves
-/// like the surface does there.
+/// like the surface at that point.
 INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const bool round, int i, vd out[3][3])
 {
     const glint_prim *prim = args->prim;
@@ -75,7 +75,7 @@ INNER void hold_lanes(const glint_bend_args *args, const bent_rays *rays, const 
     const vd further = rest / DOT(gradient, rays->direction);
     const vd side = d_select(d_lt(DOT(gradient, normal), d_set(0)), d_set(-1), d_set(1));
     const vd shorter = d_set(-1) / DOT(rays->direction, eye),
-             away = DOT(rays->turned, eye); // eye is opposite to the ray
+             away = DOT(rays->turned, eye); // the vector eye is opposite to the ray
     const vd curved = side * d_set(round ? 1 / prim->radius : 1);
     for (int c = 0; c < 3; c++) {
         const vd moved = carried[c] + further * rays->direction[c];

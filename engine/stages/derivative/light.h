@@ -1,5 +1,5 @@
-// How fast reflected light changes: the formulas of stages/ref/light.h, shade.h and microfacets.h on numbers with
-// slopes. Contract: contract/derivative.h.
+// Computes how fast reflected light changes: evaluates the formulas of stages/ref/light.h, shade.h and microfacets.h
+// on numbers with slopes. Contract: contract/derivative.h.
 #ifndef GLINT_DERIVATIVE_LIGHT_H
 #define GLINT_DERIVATIVE_LIGHT_H
 
@@ -9,15 +9,15 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-// The inputs with slopes. Each kernel is compiled for some of these sets.
+// Sets of inputs that have slopes. Each kernel is compiled for some combinations of these sets.
 enum {
     SLOPES_BENT = 1, ///< points, normals and eye vectors
     SLOPES_TURNED = 2, ///< position and direction of the light
-    SLOPES_OTHER = 4, ///< colours, and all other values
+    SLOPES_OTHER = 4, ///< colours, and all other inputs
     SLOPES_ALL = 7
 };
 
-/// VD points with their slopes.
+/// A vector of VD points with their slopes.
 typedef struct seen_lanes {
     vs point[3], normal[3], eye[3];
 } seen_lanes;
@@ -27,7 +27,7 @@ typedef struct shine_lanes {
     vs direction[3]; ///< unit, towards the light
     vs cosine; ///< n.l
     vs distance; ///< directional: infinite
-    vs weight; ///< attenuation by distance, cone and surface, times the transmitted share
+    vs weight; ///< attenuation by distance, cone and the light's surface, times the transmitted share
     bool weighs; ///< false: the weight is 1
 } shine_lanes;
 
@@ -47,7 +47,7 @@ INNER seen_lanes seen_points(const glint_derivative_points *points, const unsign
     return out;
 }
 
-/// Returns a spot's factor; see spot_x and cone of stages/ref/light.h.
+/// Returns the factor of a spot's cone; see spot_x and cone in stages/ref/light.h.
 INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, const vs direction[3])
 {
     const bool any = slopes, turned = slopes & SLOPES_TURNED, other = slopes & SLOPES_OTHER;
@@ -63,7 +63,7 @@ INNER vs spot_cone(const glint_derivative_light *light, const unsigned slopes, c
     return s_mul(step, s_pow(c, s_of(other, light->exponent)));
 }
 
-/// Computes the weight of a surface with radiance, from its orientation and distance.
+/// Returns the weight of a light's surface with radiance, from the orientation and the distance of the surface.
 INNER vs surface_weight(const glint_derivative_source *source, const vs direction[3], vs length2, vs distance, int i)
 {
     vs normal[3];
@@ -146,7 +146,7 @@ INNER vs power_lanes(const glint_derivative_material *material, vs shininess, co
     return material->lobe == GLINT_LOBE_POWER_COSINE ? s_keep(true, s_mul(strength, s->cosine)) : s_keep(true, strength);
 }
 
-/// Returns Smith's masking for Beckmann's distribution, Lambda times x; see stages/ref/shade.h.
+/// Returns Smith's masking for Beckmann's distribution: x times Lambda at the cosine x; see stages/ref/shade.h.
 INNER vs mask_lanes(vs alpha, vs x)
 {
     const vs zero = s_set(0), one = s_set(1), rest = s_sub(one, s_mul(x, x));
@@ -156,7 +156,8 @@ INNER vs mask_lanes(vs alpha, vs x)
     return s_select(d_lt(q.v, d_set(1.6)), s_div(up, down), zero);
 }
 
-/// Returns D G / (4 n.v) of pi D F G / (4 n.v) n.l, as in stages/ref/shade.h; `sine2`: between n and h.
+/// Returns the factor D G / (4 n.v) of pi D F G / (4 n.v) n.l, as in stages/ref/shade.h; `sine2`: squared sine of the
+/// angle between n and h.
 INNER vs facet_lanes(const glint_derivative_material *material, vs alpha, vs sine2, vs l, vs v)
 {
     const vs one = s_set(1), aa = s_mul(alpha, alpha), floor = s_set(0x1p-126), cosine2 = s_sub(one, sine2);
@@ -167,7 +168,7 @@ INNER vs facet_lanes(const glint_derivative_material *material, vs alpha, vs sin
         return s_keep(true, s_mul(s_mul(u, u), s_div(s_mul(l, s_set(0.5)), s_max(d, floor))));
     }
     const vs c = s_max(cosine2, s_set(0x1p-40));
-    const vs y = s_div(s_mul(s_div(sine2, c), s_set(-0x1.71547652b82fep+0)), aa); // -log2(e)
+    const vs y = s_div(s_mul(s_div(sine2, c), s_set(-0x1.71547652b82fep+0)), aa); // the factor is -log2(e)
     const vd e = d_exp2(y.v);
     const vs spread = { e, (e * d_set(0x1.62e42fefa39efp-1)) * y.d, y.level };
     const vs masked = s_add(s_mul(v, mask_lanes(alpha, l)), s_mul(l, mask_lanes(alpha, v)));
@@ -198,7 +199,7 @@ INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const
     *grazing = s_keep(true, s_select(there, s_mul(lobe, s_mul(s_mul(mm, mm), m)), zero));
 }
 
-/// The products of a light's and a material's colours.
+/// The products of a light's colours and a material's reflectances.
 typedef struct shared_colors {
     vs diffuse[3], specular[3], grazing[3];
 } shared_colors;

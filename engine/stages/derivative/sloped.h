@@ -1,5 +1,5 @@
-// The vector vocabulary of derivatives: numbers with their slopes. If `level` is a constant for the compiler, code
-// for slopes of 0 is removed. s_keep makes `level` a constant where branches join.
+// The vector vocabulary of derivatives: numbers with their slopes. If `level` is a constant for the compiler, it
+// removes the code for slopes that are 0. s_keep makes `level` a constant where branches join.
 #ifndef GLINT_DERIVATIVE_SLOPED_H
 #define GLINT_DERIVATIVE_SLOPED_H
 
@@ -12,7 +12,7 @@ INNER vd d_either(bool first, vd a, vd b) { return first ? a : b; }
 
 typedef struct vs {
     vd v, d; ///< values and slopes
-    bool level; ///< all slopes are 0: d is not read
+    bool level; ///< true: all slopes are 0, and d is not read
 } vs;
 
 INNER vs s_make(vd v, vd d) { return (vs) { v, d, false }; }
@@ -24,7 +24,7 @@ INNER vs s_load(const double *value, const double *slope, bool sloped, int i)
     return (vs) { d_load(value + i), sloped ? d_load(slope + i) : d_set(0), !sloped };
 }
 
-/// Returns `a` with slopes only if `sloped`.
+/// Returns `a`, with its slopes only if `sloped` is true.
 INNER vs s_keep(bool sloped, vs a) { return (vs) { a.v, a.level ? d_set(0) : a.d, !sloped }; }
 
 INNER vs s_add(vs a, vs b)
@@ -53,7 +53,7 @@ INNER vs s_sqrt(vs a)
     return a.level ? s_level(r) : s_make(r, d_select(d_lt(zero, r), (d_set(0.5) * a.d) / r, zero));
 }
 
-/// A root and its inverse, whose slopes need no further division.
+/// A square root and its inverse. Their slopes need no further division.
 typedef struct vs_length {
     vs whole, inverse;
 } vs_length;
@@ -71,7 +71,7 @@ INNER vs s_select(dm mask, vs a, vs b)
 {
     return (vs) { d_select(mask, a.v, b.v), a.level && b.level ? d_set(0) : d_select(mask, a.d, b.d), a.level && b.level };
 }
-/// Return the minimum, which is `b` unless a is below it, and the maximum.
+/// Return the minimum, which is b unless a < b, and the maximum.
 INNER vs s_min(vs a, vs b) { return s_select(d_lt(a.v, b.v), a, b); }
 INNER vs s_max(vs a, vs b) { return s_select(d_lt(b.v, a.v), a, b); }
 INNER vs s_dot(const vs a[3], const vs b[3])
@@ -79,12 +79,12 @@ INNER vs s_dot(const vs a[3], const vs b[3])
     return s_add(s_add(s_mul(a[0], b[0]), s_mul(a[1], b[1])), s_mul(a[2], b[2]));
 }
 
-/// Returns x^s for x 0 .. 1, and 0 if x is not above 0.
+/// Returns x^s for x in 0 .. 1, and 0 if x is not above 0.
 INNER vs s_pow(vs x, vs s)
 {
     const vd zero = d_set(0), one = d_set(1), ln_2 = d_set(0x1.62e42fefa39efp-1);
     const dm there = d_lt(zero, x.v);
-    if (!dm_bits(there)) // far from a highlight, as in many groups
+    if (!dm_bits(there)) // many groups are far from any highlight
         return (vs) { zero, zero, x.level && s.level };
     const vd base = d_select(there, d_min(x.v, one), one), log2 = d_log2(base), y = d_exp2(s.v * log2);
     const vd value = d_select(there, y, zero);

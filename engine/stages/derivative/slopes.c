@@ -1,4 +1,4 @@
-// How fast hits, light and colours change.
+// Kernels that compute how fast hits, light and colours change.
 #include "engine/stages/derivative/bend.h"
 #include "engine/stages/derivative/light.h"
 

@@ -1,4 +1,4 @@
-// estimate, range and differ: which neighbouring pixels differ. Contract: stages.h.
+// estimate, range and differ: find the neighbouring pixels that differ. Contract: stages.h.
 #ifndef GLINT_FILM_DIFFER_H
 #define GLINT_FILM_DIFFER_H
 
@@ -32,13 +32,13 @@ static void range(const glint_range_args *args, float out[2])
     out[1] = f_max_all(most);
 }
 
-/// Returns the differences of one value, from pixel i of one line and k of another on.
+/// Returns the differences of one value for VF pairs, from pixel i of one line and pixel k of another line on.
 static inline vf apart_in(const float *const *p, int value, uint32_t i, const float *const *q, uint32_t k)
 {
     return f_abs(f_load_any(p[value] + i) - f_load_any(q[value] + k));
 }
 
-/// Compares VF pairs, from pixel i of one line and k of another on.
+/// Compares VF pairs, from pixel i of one line and pixel k of another line on.
 static inline void differ_pairs(const glint_differ_args *args, const float *const *p, uint32_t i, const float *const *q,
                                 uint32_t k, uint32_t bit, uint32_t *sure, uint32_t *undecided)
 {
@@ -56,7 +56,7 @@ static inline void differ_pairs(const glint_differ_args *args, const float *cons
     *undecided |= fm_bits(f_lt(f_set(args->low), sum)) << bit;
 }
 
-/// Returns the lowest `count` bits of 32.
+/// Returns a mask of the lowest `count` bits; count is at most 32.
 static inline uint32_t first_bits(uint32_t count) { return count < 32 ? (1u << count) - 1 : UINT32_MAX; }
 
 static inline void differ_lines(const glint_differ_args *args, bool along, bool across, glint_differences *out)
@@ -82,7 +82,7 @@ static inline void differ_lines(const glint_differ_args *args, bool along, bool 
     }
 }
 
-/// One copy is compiled for each constant.
+/// Compiles one copy of the kernel for each constant.
 static void differ(const glint_differ_args *args, glint_differences *out)
 {
     if (args->along && args->q)

@@ -1,4 +1,4 @@
-// Differences between pixels, and their values in files.
+// Differences between pixels, and 8-bit pixel values.
 #include "engine/stages/film/differ.h"
 #include "engine/stages/film/tone.h"
 

@@ -7,14 +7,15 @@
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Returns 1 / samples if samples is a power of two, so that products equal quotients; otherwise 0.
+/// Returns 1 / samples if samples is a power of two, so that multiplying gives the same bits as dividing; otherwise
+/// 0.
 static inline double inverse_of(double samples)
 {
     int exponent;
     return frexp(samples, &exponent) == 0.5 ? 1 / samples : 0;
 }
 
-/// Returns sum / samples. `inverse`: of these samples.
+/// Returns sum / samples. `inverse`: the result of inverse_of for these samples.
 static inline vd mean_of(vd sum, double samples, double inverse)
 {
     if (inverse > 0)
@@ -22,7 +23,7 @@ static inline vd mean_of(vd sum, double samples, double inverse)
     return sum / d_set(samples);
 }
 
-/// Computes one term that shade does not compute.
+/// Computes the mean of one term that shade does not compute.
 static inline void resolve_further(const glint_resolve_args *args, double inverse, int term, size_t at)
 {
     _Alignas(64) float mean[GLINT_GROUP];

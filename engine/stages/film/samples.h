@@ -1,4 +1,5 @@
-// resolve_samples: shade and resolve in one pass, with sums in registers or a group's own memory. Contract: stages.h.
+// resolve_samples: shade and resolve in one pass, with sums in registers or in memory for one group. Contract:
+// stages.h.
 #ifndef GLINT_FILM_SAMPLES_H
 #define GLINT_FILM_SAMPLES_H
 
@@ -18,7 +19,7 @@ typedef struct samples_frame {
     float background[3]; ///< the mean over all samples
 } samples_frame;
 
-/// Returns the mean of equal terms, added up like others.
+/// Returns the mean of terms that are equal in all samples, added up in the same way as other terms.
 static inline float mean_of_equal(const samples_frame *frame, double term)
 {
     double sum = 0;
@@ -27,10 +28,10 @@ static inline float mean_of_equal(const samples_frame *frame, double term)
     return (float)(frame->inverse > 0 ? sum * frame->inverse : sum / (double)frame->count);
 }
 
-/// One light's contribution to a term in a channel: factor times kd Id or ks Is, plus the grazing term of
+/// One light's contribution to a term in a channel: the factor times kd Id or ks Is, plus the grazing term of
 /// microfacets.
 typedef struct light_share {
-    const float *factor, *grazing; ///< grazing NULL: nothing
+    const float *factor, *grazing; ///< grazing NULL: there is no grazing term
     float color, rise;
 } light_share;
 
@@ -45,7 +46,7 @@ static inline light_share share_of(const light_factors *factors, const glint_sha
                            has_facets(material) ? share_color(material->grazing[c], light->specular[c]) : 0 };
 }
 
-/// Returns one vector of it.
+/// Returns one vector of the contribution.
 static inline vf share_lanes(const light_share *share, int i)
 {
     vf x = f_load(share->factor + i) * f_set(share->color);
@@ -94,7 +95,7 @@ static inline const glint_shade_material *only_material(const samples_frame *fra
     return material;
 }
 
-/// Resolves a group that shows one material, without terms to store: in registers.
+/// Resolves a group that shows one material and stores no terms, in registers.
 static inline void resolve_whole(const samples_frame *frame, const glint_shade_material *material, uint32_t g)
 {
     const bool specular = frame->sample->highlights && material->highlight;

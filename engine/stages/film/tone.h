@@ -1,5 +1,6 @@
-// tone: float light to 8-bit pixel values, exact for every float. If the instruction set has f_by_exponent, an
-// estimate gives the value, and only vectors with an uncertain lane are looked up. Contract: stages.h.
+// tone: converts float light to 8-bit pixel values, exactly for every float. If the instruction set has
+// f_by_exponent, an estimate gives the value, and only vectors with an uncertain lane are looked up. Contract:
+// stages.h.
 #ifndef GLINT_FILM_TONE_H
 #define GLINT_FILM_TONE_H
 
@@ -26,7 +27,7 @@ static inline vi tone_exact(const uint32_t *table, const vf x[3])
     return i_or(rgb, i_shl(tone_look_up(table, x[2]), 16));
 }
 
-/// The fit in registers. `table`: everything is looked up, without instructions for the fit or without a fit.
+/// The fit in registers. `table`: true: all values are looked up, because there is no fit or no instruction for it.
 typedef struct tone_fit {
     bool table;
 #ifdef f_by_exponent
@@ -84,8 +85,8 @@ static inline vi tone_codes(const uint32_t *table, const tone_fit *fit, const vf
 }
 #endif
 
-/// Clamps three vectors that are not all in 0 .. top, and counts their pixels; `active`: of their lanes; `beauty`:
-/// the light before exposure.
+/// Clamps three vectors that are not all in 0 .. top, and counts their clipped and non-finite pixels. active: mask of
+/// these vectors' lanes; beauty: the light before exposure.
 static inline void tone_clamp(const glint_tone_args *args, const vf beauty[3], vf x[3], unsigned active)
 {
     const vf zero = f_set(0), infinity = f_set(HUGE_VALF), white = f_set(args->white), top = f_set(args->top);
@@ -99,8 +100,8 @@ static inline void tone_clamp(const glint_tone_args *args, const vf beauty[3], v
     *args->nonfinite += (unsigned)__builtin_popcount(~fm_bits(sound) & active);
 }
 
-/// Returns whether a lane is negative (also -0), above top or NaN: its bits, as an unsigned number, are above those
-/// of top.
+/// Returns whether any lane is negative (or -0), above top, or NaN. The bits of such a float, as an unsigned number,
+/// are above the bits of top.
 static inline bool tone_is_outside(const vf x[3], vf top)
 {
     return fm_bits(i_any_above(f_bits(x[0]), f_bits(x[1]), f_bits(x[2]), f_bits(top))) != 0;
@@ -121,7 +122,8 @@ static inline bool tone_is_same(const vf a[3], const vf b[3])
     return fm_bits(fm_and(fm_and(f_eq(a[0], b[0]), f_eq(a[1], b[1])), f_eq(a[2], b[2]))) == (1u << VF) - 1;
 }
 
-/// Consecutive groups with the same light, as in backgrounds and uniform shadows, reuse the previous values.
+/// Converts all groups. Consecutive groups with the same light, as in backgrounds and uniform shadows, reuse the
+/// previous values.
 static inline void tone_groups(const glint_tone_args *args, bool exposed)
 {
     const vf gain = f_set(args->gain), top = f_set(args->top);
@@ -129,7 +131,8 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     const tone_fit fit = tone_load_fit(args->fit);
     uint32_t column = 0;
     uint8_t *codes = args->codes;
-    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // NaN: clamped vectors are never reused, as each is counted
+    vf seen[3] = { f_set(NAN), f_set(NAN), f_set(NAN) }; // NaN: never reuses clamped vectors, because each of them
+        // must be counted
     vi rgb = i_set(0);
     for (uint32_t g = 0; g < args->group_count; g++) {
         const bool last = ++column == args->groups_across;
@@ -161,7 +164,7 @@ static inline void tone_groups(const glint_tone_args *args, bool exposed)
     }
 }
 
-/// One copy is compiled for each constant.
+/// Compiles one copy of the kernel for each constant.
 static void tone(const glint_tone_args *args)
 {
     if (args->gain != 1)

@@ -1,5 +1,5 @@
-// candidate: a surface that some rays of a tile may hit, with its constants for all of them. The rays start at one
-// eye, so that filters are linear over the picture. Contract: stages.h, cast.
+// candidate: a surface that some rays of a tile may hit, with constants that are the same for all these rays. The
+// rays start at one eye, so that filters are linear over the picture. Contract: stages.h, cast.
 #ifndef GLINT_INDEX_CANDIDATE_H
 #define GLINT_INDEX_CANDIDATE_H
 
@@ -13,13 +13,14 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define GLINT_FIRST_CANDIDATES 24 ///< one node's primitives and some planes
-#define GLINT_PIXEL_CELL 2 ///< pixels along the side of a cell, for gathered pixels
+#define GLINT_FIRST_CANDIDATES 24 ///< maximum number of first candidates: the primitives of one node, and some planes
+#define GLINT_PIXEL_CELL 2 ///< side of a cell in pixels, for gathered pixels
 
 /// The lens that a tile's rays start on.
 typedef struct R(tile_lens) {
     lens_on_screen seen;
-    _Alignas(64) float across[2][GLINT_GROUP]; ///< where each lane's rays start on the lens, in screen units at k = 1
+    _Alignas(64) float across[2][GLINT_GROUP]; ///< the point on the lens where each lane's ray starts, in screen
+        ///< units at k = 1
 } R(tile_lens);
 
 #define PIXEL_ROWS (GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL)
@@ -29,56 +30,63 @@ typedef struct R(pixel_groups) {
     _Alignas(64) float s[GLINT_TILE_GROUPS][GLINT_GROUP], t[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< screen positions of
         ///< the rays
     uint64_t in_cell[PIXEL_ROWS][SCREEN_ACROSS]; ///< groups with a ray in the cell, one bit each
-    _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< of each ray: SCREEN_ACROSS times its row, plus its
-        ///< column
-    uint16_t starts[GLINT_TILE_GROUPS]; ///< lanes whose cell differs from the previous lane's, including the first
+    _Alignas(64) uint32_t cell[GLINT_TILE_GROUPS][GLINT_GROUP]; ///< the cell of each ray: SCREEN_ACROSS times the row
+        ///< of the cell, plus its column
+    uint16_t starts[GLINT_TILE_GROUPS]; ///< bit mask of the lanes whose cell differs from the previous lane's cell,
+        ///< including the first lane
     float far[GLINT_TILE_GROUPS]; ///< as for the groups of a tile
 } R(pixel_groups);
 
 /// The tile's pixels as the filter needs them, and the hits so far.
 typedef struct R(tile_cast) {
     const glint_cast_args *args;
-    screen_view view; ///< its cells are the groups
+    screen_view view; ///< the screen; its cells are the groups
     int across, down;
-    bool scaled; ///< the arrays below are filled
-    bool parallel; ///< the rays do not start at one eye but are parallel, or start on a lens; they are in arrays
+    bool scaled; ///< true: the arrays below are filled
+    bool parallel; ///< true: the rays do not start at one eye: they are parallel or start on a lens, and are read
+        ///< from arrays
     const R(tile_lens) * lens; ///< NULL: no lens
-    bool deep; ///< more candidates are in sight than the first ones, so that it pays to know which hides which
-    R(pixel_groups) * pixels; ///< NULL: the groups' pixels lie in rows, and cells are groups
+    bool deep; ///< true: there are candidates in sight beyond the first ones, so that it pays to test which
+        ///< candidates hide others
+    R(pixel_groups) * pixels; ///< NULL: each group is a block of 4 x 4 pixels, and the cells are the groups
     float rr, uu; ///< squares of the lengths of right and up
     float longest; ///< maximum length of a direction
-    float spread; ///< maximum difference of the lengths of directions within a group from the length in its middle
+    float spread; ///< maximum difference between the length of a direction within a group and the length of the
+        ///< direction in the middle of the group
     _Alignas(64) float s[GLINT_TILE_WIDTH / 4][GLINT_GROUP], t[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     _Alignas(64) float ss[GLINT_TILE_WIDTH / 4][GLINT_GROUP], tt[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     ///< |direction|^2 = ss + tt
-    // deep: depth of the hits, in the index's units and rounded up; infinite without a hit
+    // only if `deep`: depth of each hit, in the index's units and rounded up; infinite without a hit
     _Alignas(64) float depth[GLINT_TILE_GROUPS][GLINT_GROUP];
-    _Alignas(64) float far[GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL][SCREEN_ACROSS]; ///< maximum depth in each group, or
-        ///< cell
+    _Alignas(64) float far[GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL][SCREEN_ACROSS]; ///< maximum depth of the hits in
+        ///< each group, or in each cell
 } R(tile_cast);
 
-/// A primitive that some of the tile's rays may hit, with its constants for all of them.
+/// A primitive that some of the tile's rays may hit, with constants that are the same for all of the rays.
 typedef struct R(candidate) {
     const glint_prim *prim;
     uint32_t id;
     real f[3], c; ///< see R(offset) and R(offset_constant)
     real scale, r2; ///< of a sphere
     float base[3], along_s[3],
-        along_t[3]; ///< the filter, linear in s and t: f x d for a sphere, e for a triangle, approach rate of a ray for
-    ///< a plane
-    float limit; ///< sphere: square of the maximum length of f x d; triangle: how far below 0 e may be
+        along_t[3]; ///< coefficients of the filter's function, which is linear in s and t: f x d for a sphere, e for
+    ///< a triangle, the rate at which a ray approaches for a plane
+    float limit; ///< sphere: square of the maximum length of f x d; triangle: error bound of e: a hit may have e down
+        ///< to -limit
     union {
-        real corner[3][3]; ///< of a triangle, relative to the eye
-        real height[6]; ///< of a solid, see R(solid_start)
+        real corner[3][3]; ///< the corners of a triangle, relative to the eye
+        real height[6]; ///< for a solid: heights of the eye, see R(solid_start)
     };
     // data for cover.h
-    float outer, inner; ///< round: maximum length of f x d; length up to which rays certainly hit. < 0: nothing is
-        ///< certain
-    float axis_length[2]; ///< round: lengths of along_s and along_t
-    float around; ///< round: maximum length of the change of f x d from the middle of a group to its corner
-    float ahead[3], sway; ///< sphere: of b; how much b changes within a group
-    float power; ///< t of a hit is this divided by ... > 0; 0: unknown
-    bool distant; ///< sphere: where it is hit, the discriminant is the one for spheres far away
+    float outer, inner; ///< round candidates: outer: maximum length of f x d for a hit; inner: length up to which
+        ///< rays certainly hit; < 0: no hit is certain
+    float axis_length[2]; ///< round candidates: lengths of along_s and along_t
+    float around; ///< round candidates: maximum length of the change of f x d from the middle of a group to its
+        ///< corner
+    float ahead[3], sway; ///< sphere: ahead: coefficients of b as a linear function of s and t; sway: maximum change
+        ///< of b within a group
+    float power; ///< t of a hit is this number divided by a positive number that bounds_of_t computes; 0: unknown
+    bool distant; ///< sphere: true: all hits use the discriminant for distant spheres
 } R(candidate);
 
 /// Aims the screen along the tile's rays.
@@ -110,7 +118,7 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     view->inverse = 1;
     view->slack = view->corner_slack = R(walk_slack)(geometry);
     view->drift = 0;
-    view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // half pixels; far above the rounding error
+    view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // in half pixels; this is far above the rounding error
     view->far = HUGE_VALF;
     view->stretch = (float)(1.00001 * (1 + rr * wide[0] * wide[0] + uu * wide[1] * wide[1]));
     finish_screen(view);
@@ -168,7 +176,8 @@ static void R(scale_tile)(R(tile_cast) * tile)
     tile->scaled = true;
 }
 
-/// Makes the filter of a sphere. f, radius: of the sphere, or of a solid's bounding sphere, in any unit.
+/// Makes the filter of a sphere. f, radius: vector from the centre to the eye, and radius, of the sphere or of a
+/// solid's bounding sphere, in any unit.
 static inline void R(make_filter)(const glint_camera_args *camera, const double f[3], double radius,
                                   R(candidate) * candidate)
 {
@@ -233,7 +242,7 @@ static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate
         candidate->limit = HUGE_VALF;
 }
 
-/// Makes the filter of a plane: a ray hits it if it approaches it.
+/// Makes the filter of a plane: a ray hits the plane if it approaches the plane.
 static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -246,7 +255,7 @@ static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) 
     candidate->limit = 1e-5f * tile->longest;
 }
 
-/// Computes the data for the decision.
+/// Computes the constants that the decision needs.
 static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
     const glint_prim *prim = candidate->prim = &args->geometry->prims[id];
@@ -265,7 +274,8 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
         return;
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
-        candidate->f[0] = candidate->f[1] = candidate->f[2] = candidate->c = 0; // its parts have their own
+        candidate->f[0] = candidate->f[1] = candidate->f[2] = candidate->c = 0; // a combined solid has no such
+            // constants, but its parts do
         return;
     }
     candidate->scale = (real)(prim->kind == GLINT_PRIM_SPHERE ? glint_sphere_scale(prim) : 1);
@@ -276,7 +286,7 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
     candidate->c = R(first_lane)(R(offset_constant)(f, prim));
 }
 
-/// Computes the data for decision and filter.
+/// Computes the constants that the decision and the filter need.
 static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
@@ -294,7 +304,7 @@ static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidat
     }
 }
 
-/// Returns the lanes that pass near the candidate, at screen positions s and t; length2: |direction|^2.
+/// Returns the lanes whose rays, at screen positions s and t, pass near the candidate; length2: |direction|^2.
 INNER unsigned R(near_positions)(const R(candidate) * candidate, vf s, vf t, vf length2)
 {
     vf v[3];
@@ -305,7 +315,7 @@ INNER unsigned R(near_positions)(const R(candidate) * candidate, vf s, vf t, vf 
     return ~fm_bits(f_lt(f_set(candidate->limit) * length2, DOT(v, v))) & ((1u << VF) - 1);
 }
 
-/// Returns the lanes of group (x, y) that pass near the candidate.
+/// Returns the lanes of group (x, y) whose rays pass near the candidate.
 INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
 {
     unsigned near = 0;
@@ -316,7 +326,7 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
     return near;
 }
 
-/// Returns the lanes that hit the candidate. f: the candidate's, in every lane.
+/// Returns the lanes whose rays hit the candidate. f: the field of the candidate, copied into every lane.
 INNER rm R(intersect_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3],
                                 const vr d[3], vr *t)
 {
@@ -340,7 +350,7 @@ INNER rm R(intersect_candidate)(const glint_cast_args *args, const R(candidate) 
     return R(unless_begun_on)(table, candidate->prim, NULL, o, hit, *t);
 }
 
-/// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was stored.
+/// Decides one candidate for the lanes `near` of group (x, y). Returns whether any hit was stored.
 INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
 {
     const glint_cast_args *args = tile->args;
@@ -366,7 +376,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     return any;
 }
 
-/// Updates the maximum depth of a group's hits. Returns it.
+/// Updates the maximum depth of a group's hits, and returns it.
 static inline float R(depth_of_group)(R(tile_cast) * tile, int g)
 {
     const real scale = (real)tile->args->geometry->scale;
@@ -437,8 +447,8 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
             tile->far[y][x] = x < tile->across ? HUGE_VALF : -HUGE_VALF;
 }
 
-/// Returns the lanes of a group that may hit a shape before their current hits, by the distance between the lens rays
-/// and the eye's rays at the depth of the shape's middle. The shape's box begins at `near`.
+/// Returns the lanes of a group whose rays may hit a shape before their current hits. The test uses the distance
+/// between the lens rays and the eye's rays at the depth of the shape's middle. The shape's box begins at `near`.
 static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const shape_on_screen *shape, float middle,
                                              float near, int x, int y)
 {

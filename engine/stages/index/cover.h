@@ -1,6 +1,7 @@
-// cover: the groups of a tile in which a candidate may be visible, those that it fills, and those in which another
-// candidate hides it. Each group is tested by the ray through its middle, with bounds for its other rays. Float and
-// conservative, including rounding and NaN: uncertain cases are left to the pixels. Contract: stages.h, cast.
+// cover: finds the groups of a tile in which a candidate may be visible, the groups that it fills, and the groups in
+// which another candidate hides it. The test uses the ray through the middle of each group, and bounds for the
+// group's other rays. It is float and conservative, including rounding and NaN: uncertain cases are tested pixel by
+// pixel. Contract: stages.h, cast.
 #ifndef GLINT_INDEX_COVER_H
 #define GLINT_INDEX_COVER_H
 
@@ -9,8 +10,9 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-#define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< bit COVER_ACROSS y + x of a set of groups is group (x, y)
-#define COVER_MARGIN 1e-4 ///< for certain decisions; far above the rounding of float and real
+#define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< number of columns of groups; in a set of groups, bit COVER_ACROSS y +
+    ///< x is group (x, y)
+#define COVER_MARGIN 1e-4 ///< relative margin of certain decisions; far above the rounding errors of float and real
 
 _Static_assert(COVER_ACROSS == 8, "groups_between repeats a row's bits a byte each");
 
@@ -34,7 +36,7 @@ INNER bool R(is_round)(const R(candidate) * candidate)
 
 // ---- A candidate in all groups ----
 
-/// Computes the cover of a sphere, with the eye outside.
+/// Computes the cover of a sphere that does not contain the eye.
 static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const glint_camera_args *camera = tile->args->camera;
@@ -53,7 +55,7 @@ static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) 
     candidate->power = (float)(c / glint_sphere_scale(prim));
 }
 
-/// Computes the cover of a candidate, after the filter. Nothing is certain for triangles and solids.
+/// Computes the cover of a candidate whose filter is set. No hit is certain for triangles and solids.
 static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const double c = candidate->c, height = fabs(c);
@@ -83,9 +85,9 @@ static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 
 // ---- Groups ----
 
-/// VF groups of a tile.
+/// A vector of VF groups of a tile.
 typedef struct R(patches) {
-    vf s, t, length; ///< position of the middle, and length of the direction there
+    vf s, t, length; ///< screen position of the group's middle, and length of the direction there
 } R(patches);
 
 /// Returns the groups from group i on, i a multiple of VF.
@@ -118,7 +120,7 @@ INNER float R(edge_sway)(const R(candidate) * candidate, int j)
 
 /// Returns the groups in which all rays pass a round candidate within `inner`, where f x d is v in the middle. |f x
 /// d|^2 - inner^2 |d|^2 changes towards a corner by at most its slope and its curvature. Along a horizon both terms
-/// grow alike.
+/// grow at the same rate.
 INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, const vf v[3])
 {
     const vf inner = f_set(candidate->inner), inner2 = inner * inner, around = f_set(candidate->around);
@@ -133,7 +135,7 @@ INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * 
     return fm_bits(fm_and(f_lt(f_set(0), inner), f_lt(most, f_set(0))));
 }
 
-/// Returns the groups in which the candidate may be visible; *sure: those that it fills.
+/// Returns the groups in which the candidate may be visible; *sure: the groups that it fills.
 INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at,
                                unsigned *sure)
 {
@@ -151,7 +153,7 @@ INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * c
     const vf spread = f_set(tile->spread), around = f_set(candidate->around), off2 = DOT(v, v);
     const vf reach = f_set(candidate->outer) * (at->length + spread) + around;
     *sure = R(filled_groups)(tile, candidate, at, v);
-    if (*sure) { // in front of the eye, not behind
+    if (*sure) { // the candidate must be in front of the eye, not behind
         const vf b =
             (f_set(candidate->ahead[0]) + at->s * f_set(candidate->ahead[1])) + at->t * f_set(candidate->ahead[2]);
         *sure &= fm_bits(f_lt(zero, b));
@@ -204,8 +206,9 @@ static inline void R(leave_hidden)(const R(tile_cast) * tile, const R(candidate)
             may[k] &= ~fm_bits(f_lt(nearest, low[k]));
 }
 
-/// Computes the covers of all candidates. may: in, groups that a candidate's box allows; out, those that it may show
-/// in. sure: out, groups that it fills, if nothing is in front of it.
+/// Computes the covers of all candidates. may: in: for each candidate, the groups in which its box may be visible;
+/// out: the groups in which the candidate may be visible. sure: out: the groups that the candidate fills unless
+/// another one is in front of it.
 static void R(cover_tile)(const R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[],
                           uint64_t sure[])
 {

@@ -1,10 +1,10 @@
-// leaf: the triangles of a node as an eye or a light sees them, one per lane: bounds of their screen positions, their
+// leaf: the triangles of a node as seen from an eye or a light, one per lane: bounds of their screen positions, their
 // smallest depth, and their edge functions, which are linear over the screen. Float and conservative, in the frame of
 // screen.h.
 //
 // A ray at position (u, v) is (u, v, 1) in the coordinates (a, b, k) of the screen. It hits a triangle with corners
-// P_j there if its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the sign of the corners'
-// determinant.
+// P_j there if its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the same sign as the determinant of
+// the corners.
 #ifndef GLINT_INDEX_LEAF_H
 #define GLINT_INDEX_LEAF_H
 
@@ -12,11 +12,11 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/elementary.h"
 
-/// Relative bound of the rounding error of a corner's screen position; twice that if float decides.
+/// Relative error bound of a corner's screen position; the bound is twice this if float decides.
 #define LEAF_SLACK 0x1p-20f
 
 typedef struct leaf_on_screen {
-    /// In: for each corner and axis, relative to the view's exact origin, in the index's units.
+    /// Input: the coordinates of each corner relative to the view's exact origin, in the index's units.
     _Alignas(64) float corner[3][3][GLINT_NODE_WIDTH];
     /// For each edge: hits have (edge[0] u + edge[1] v) + edge[2] >= 0. Infinite if the orientation of the corners is
     /// uncertain.
@@ -26,10 +26,10 @@ typedef struct leaf_on_screen {
     unsigned certain, negative; ///< slots with finite edge functions; of these, those with a negative determinant
 } leaf_on_screen;
 
-/// VF triangles in the coordinates of the screen.
+/// A vector of VF triangles in the coordinates of the screen.
 typedef struct leaf_lanes {
     vf a[3], b[3], w[3], k[3];
-    vf lowest, highest; ///< smallest k; largest |k|
+    vf lowest, highest; ///< smallest k and largest |k| of the corners
     vf numbers, size; ///< bounds of the sum of the corners' components, and of the triangle's size
 } leaf_lanes;
 
@@ -54,9 +54,8 @@ static inline leaf_lanes place_leaf(const leaf_on_screen *leaf, const screen_vie
     return out;
 }
 
-/// Returns a bound of the error of corners and rays, as a length perpendicular to the ray at the corners: 5 roundings
-/// of a corner along each axis, scaled by the screen's stretch, a few of screen position and k, and the view's own
-/// bound.
+/// Returns an error bound of corners and rays, as a length perpendicular to the ray at the corners: 5 roundings of a
+/// corner along each axis, scaled by the screen's stretch, a few of screen position and k, and the view's own bound.
 static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view, bool is_float)
 {
     const float slack = is_float ? 2 * LEAF_SLACK : LEAF_SLACK;
@@ -90,9 +89,9 @@ static inline void bound_leaf(const leaf_lanes *at, vf slack, const screen_view 
 /// perpendicular to that ray.
 ///
 /// An edge function is the product (x_p y_q - x_q y_p) as seen from the ray it is evaluated for. A ray that hits the
-/// triangle is within `wide / 2` of each corner, and all of these have an error of at most `off`. The sums below add
-/// up to 22 roundings of products of k, position and x, and 12 of x and y. The volume is the sum of the edge
-/// functions times k, as seen from the middle.
+/// triangle is within `wide / 2` of each corner, and each of these distances has an error of at most `off`. The sums
+/// below add up to 22 roundings of products of k, position and x, and 12 of x and y. The volume is the sum of the
+/// edge functions times k, as seen from the middle.
 static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)
 {
     const vf depth = (at->k[0] + at->k[1]) + at->k[2];
@@ -132,8 +131,8 @@ static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_vi
     leaf->negative |= fm_bits(negative) << i;
 }
 
-/// Computes everything that follows from the corners. `near` is that of the box if rounding may put a hit anywhere on
-/// the ray: if the triangle is seen edge-on, or if float decides.
+/// Computes everything that follows from the corners. `near` is the smallest w of the box if rounding may put a hit
+/// anywhere on the ray: for a triangle seen edge-on, or if float decides.
 static void show_leaf(const screen_view *view, const node_on_screen *seen, bool is_float, leaf_on_screen *leaf)
 {
     leaf->certain = leaf->negative = 0;
@@ -199,7 +198,7 @@ static void show_through_lens(const leaf_on_screen *corners, const screen_view *
             deepest = f_max(deepest, f_abs(focus_ratio));
         }
         const vf slack = slack_of_leaf(&at, view, is_float);
-        for (int j = 0; j < 2; j++) { // for l c: its rounding error, and that of c
+        for (int j = 0; j < 2; j++) { // the rounding error of l c, including the error of c
             wide[j] = width_through_lens(&at, j ? at.b : at.a, view, lens, j);
             off[j] = slack * f_set(2 / view->unit[j]) + f_set(0x1p-20f * lens->reach[j]) * (f_set(1) + deepest);
         }

@@ -1,6 +1,7 @@
 // screen: the view of one eye, or of one light: boxes and surfaces of the index in front of a screen that is divided
-// into cells. Rays from one eye form a bundle, and so do segments to one light. A primitive that they may hit is only
-// tested against the cells at its position on the screen. Float and conservative, like walk.h.
+// into cells. Rays from one eye form a bundle, and so do segments to one light. A primitive that rays or segments may
+// hit is only tested in the cells at the primitive's position on the screen. All of this is float and conservative,
+// like walk.h.
 //
 // The frame has two axes across the bundle, and one, w, along it. A point (a, b, w) is projected to a / k and b / k,
 // with k = base + inverse w. For a camera's pixels k is w, so that screen positions are s and -t. For segments k is 1
@@ -15,24 +16,26 @@
 #define SCREEN_DOWN 20 ///< maximum number of rows
 
 typedef struct screen_view {
-    float origin[3], axis[3][3]; ///< of the frame, in the index's frame; the axes are orthogonal within rounding
-    double exact[3]; ///< origin before rounding
+    float origin[3], axis[3][3]; ///< origin and axes of the screen's frame, in the index's frame; the axes are
+        ///< orthogonal within rounding
+    double exact[3]; ///< the origin before it was rounded
     float unit[2]; ///< length of a unit of screen position at k = 1; the third axis is a unit vector
-    float base, inverse; ///< of k
-    float slack; ///< bound of a ray's rounding error, in addition to the error from a box's numbers
+    float base, inverse; ///< coefficients of k
+    float slack; ///< bound of a ray's rounding error, in addition to the error that comes from the coordinates of a
+        ///< box
     float first[2], last[2]; ///< bounds of the rays' screen positions
-    float margin; ///< their rounding error
+    float margin; ///< bound of the rounding error of these positions
     float cells[2]; ///< cells per unit of screen position
     int count[2]; ///< columns and rows
-    float far; ///< maximum w that matters
+    float far; ///< maximum w of anything that can be visible
     float stretch; ///< upper bound of (length of a ray / its extent along w)^2
     float reach,
-        reach_of_numbers; ///< bound of a ray's error at a surface: the first, plus the second times the surface's
-            ///< numbers
+        reach_of_numbers; ///< error bound of a ray at a surface: the first number, plus the second number times the
+            ///< size of the surface's coordinates
     float weight[2], area; ///< squares of `unit`, and the root of their product
-    float root_stretch, spread; ///< of `stretch`; bound of the lengths of screen positions, at k = 1
-    float corner_slack, drift; ///< like slack, for corners relative to the exact origin: anywhere, and at k = 1,
-        ///< growing with k
+    float root_stretch, spread; ///< root of `stretch`; upper bound of the length of a screen position, at k = 1
+    float corner_slack, drift; ///< like slack, for corners relative to the exact origin: corner_slack holds
+        ///< everywhere; drift is the bound at k = 1 and grows with k
 } screen_view;
 
 /// Computes the fields that follow from the others.
@@ -50,8 +53,8 @@ static void finish_screen(screen_view *view)
     view->area = view->unit[0] * view->unit[1];
 }
 
-/// Returns the cell of a position along an axis. The map is monotonic, so that positions between two others are in
-/// cells between theirs.
+/// Returns the cell of a position along an axis. The map is monotonic, so that a position between two others is in a
+/// cell between their cells.
 static inline vi screen_cell(const screen_view *view, int axis, vf position)
 {
     const vf cell = (position - f_set(view->first[axis])) * f_set(view->cells[axis]);
@@ -68,15 +71,15 @@ static inline int last_row(screen_cells cells) { return (int)(cells >> 24); }
 
 /// The boxes of a node on the screen.
 typedef struct node_on_screen {
-    _Alignas(64) float middle[3][GLINT_NODE_WIDTH]; ///< in the frame
-    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< smallest w
-    _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
+    _Alignas(64) float middle[3][GLINT_NODE_WIDTH]; ///< middle of each box in the frame
+    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< smallest w of each box
+    _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< the cells of each box, in the format of screen_cells
 } node_on_screen;
 
-/// Computes bounds of the positions of boxes whose k is between nearest and farthest. For boxes that reach the eye
-/// the bounds are infinite, or, if the box lies to one side of the eye, begin at its position at `farthest`. In that
-/// range the lines of all rays must miss the boxes behind the eye, too: for a triangle seen edge-on, rounding may
-/// turn a hit behind the eye into a hit ahead. start, end: bounds of the screen's positions.
+/// Computes bounds of the positions of boxes whose k is between nearest and farthest. For a box that reaches the eye,
+/// the bounds are infinite, except that the inner bound of a box to one side of the eye is the box's position at
+/// `farthest`. This requires that the lines of all rays also miss the box behind the eye: for a triangle seen
+/// edge-on, rounding may turn a hit behind the eye into a hit ahead. start, end: bounds of the screen's positions.
 static inline void project_boxes(vf low, vf high, vf nearest, vf farthest, vf start, vf end, vf *least, vf *most)
 {
     const fm ahead = f_lt(f_set(0), nearest);
@@ -87,8 +90,8 @@ static inline void project_boxes(vf low, vf high, vf nearest, vf farthest, vf st
     *most = f_select(ahead, f_max(high * near, highest), f_select(left, highest, f_set(HUGE_VALF)));
 }
 
-/// Rays that start on a lens around the eye. At w they are up to `reach` |1 - per_focus w| from the eye's rays, along
-/// each axis, in screen units at k = 1.
+/// Rays that start on a lens around the eye. At depth w, they are at most `reach` |1 - per_focus w| away from the
+/// eye's rays, along each axis, in screen units at k = 1.
 typedef struct lens_on_screen {
     float reach[2], per_focus;
 } lens_on_screen;
@@ -100,9 +103,9 @@ INNER vf lens_share(const lens_on_screen *lens, vf w, vf per_k)
     return (f_abs(f_set(1) - focus_ratio) + f_set(1e-6f) * (f_set(1) + f_abs(focus_ratio))) * f_abs(per_k);
 }
 
-/// Returns the boxes that may be hit before `far`. NaN, from boxes as wide as float's range, gives every cell.
-/// `lens`: NULL, a constant: all rays start at the eye. The offset by a lens in a box is between the offsets at both
-/// ends of the box.
+/// Returns the boxes that may be hit before `far`. A box as wide as float's range gives NaN, and is in every cell.
+/// `lens`: NULL, a constant: all rays start at the eye. Within a box, the offset by a lens is between the offsets at
+/// both ends of the box.
 INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const bool parallel,
                           const lens_on_screen *lens, node_on_screen *out)
 {
@@ -165,7 +168,7 @@ static unsigned boxes_through_lens(const glint_node *node, const screen_view *vi
     return find_boxes(node, view, false, lens, out);
 }
 
-/// A node that is still to be opened, and its position.
+/// A node that is still to be opened, and its position on the screen.
 typedef struct screen_entry {
     uint32_t node;
     float near;
@@ -183,7 +186,7 @@ static inline screen_entry entry_of_root(const screen_view *view)
     return (screen_entry) { 0, -FLT_MAX, columns << 8 | rows << 24 };
 }
 
-/// Returns bits first .. last.
+/// Returns a mask of the bits first .. last.
 static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
 
 /// Returns the columns of a row in which a surface at the distance `near` may still be visible.
@@ -207,7 +210,7 @@ static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, scr
     return false;
 }
 
-/// For each row, the columns in which a node may still be visible; none where the node does not show.
+/// For each row, the columns in which a node may still be visible; 0 in rows that the node does not cover.
 typedef struct rows_behind {
     uint16_t columns[SCREEN_DOWN + 3];
 } rows_behind;
@@ -252,11 +255,11 @@ static inline unsigned prims_of_node(const glint_node *node)
     return prims;
 }
 
-/// Returns the slots of `mask`, all of which hold primitives, that hold triangles.
+/// Returns the slots of `mask` that hold triangles. All slots of `mask` must hold primitives.
 static inline unsigned triangles_in(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
 {
     unsigned found = 0;
-    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) // all are negative numbers
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) // indices of primitives are negative as signed numbers
         found |= fm_bits(i_lt(i_load(node->child + i), i_set(GLINT_NODE_PRIM | geometry->triangles))) << i;
     return found & mask;
 }
@@ -285,7 +288,7 @@ INNER void prefetch_nodes(const glint_geometry_table *geometry, const screen_ent
 
 /// A surface's bounding ball, as the filter needs it.
 typedef struct shape_on_screen {
-    float middle[2], k; ///< k of the middle: a ray passes the middle at its screen position times k
+    float middle[2], k; ///< k: k of the middle; at this depth, a ray is at its screen position times k
     float weight[2], reach2; ///< weights of the squared length of a position; square of the maximum distance of a ray
         ///< from the middle
 } shape_on_screen;
@@ -321,15 +324,15 @@ static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
     return shape_at(shape, u * f_set(shape->k), v * f_set(shape->k));
 }
 
-/// A solid that is longer than wide, bounded by a cylinder around its axis. With d along a ray, e along the axis and
-/// c from one line to the other, the lines pass each other at the distance |n . c| / |n|, n = d x e. All terms with a
-/// ray's screen position are linear in it.
+/// A solid that is longer than wide, bounded by a cylinder around its axis. Let d be the direction of a ray, e the
+/// direction of the axis, and c a vector from one line to the other. The distance of the two lines is |n . c| / |n|,
+/// with n = d x e. All terms are linear in the ray's screen position.
 typedef struct rod_on_screen {
-    float moment[3]; ///< n . c: coefficients of 1, u, v
-    float n[3][2]; ///< n: of 1 and v; of 1 and u; of u and v
-    float reach2, margin; ///< square of the maximum distance of the lines; above the rounding error of n . c and n
-        ///< reach
-    bool is; ///< false: the other fields are not set
+    float moment[3]; ///< n . c as a linear function: coefficients of 1, u, v
+    float n[3][2]; ///< the components of n as linear functions: coefficients of 1 and v; of 1 and u; of u and v
+    float reach2, margin; ///< square of the maximum distance of the lines; margin: above the rounding errors of n . c
+        ///< and of n times reach
+    bool is; ///< false: there is no rod, and the other fields are not set
 } rod_on_screen;
 
 /// Computes a primitive's rod. Not returned by value, because clang 14 for WebAssembly then loses `n`.

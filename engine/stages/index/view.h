@@ -1,5 +1,6 @@
 // view: the primitives of a small scene as seen by one camera anywhere in its picture: candidates for all tiles. For
-// each tile, one test per candidate decides whether it may show there. Contract: stages.h, cast.
+// each tile, one test per candidate decides whether the candidate may be visible in the tile. Contract: stages.h,
+// cast.
 #ifndef GLINT_INDEX_VIEW_H
 #define GLINT_INDEX_VIEW_H
 
@@ -11,9 +12,9 @@
 
 /// The capacity of glint_cast_view.
 typedef struct R(cast_view) {
-    bool few; ///< all primitives are candidates; false: the other fields are not set
+    bool few; ///< true: all primitives are candidates; false: the other fields are not set
     int count;
-    float rr, uu, spread; ///< as of a tile
+    float rr, uu, spread; ///< as in tile_cast
     R(candidate) candidates[GLINT_FIRST_CANDIDATES];
 } R(cast_view);
 
@@ -65,7 +66,7 @@ static void R(make_view)(const glint_cast_args *args, R(cast_view) * view)
     view->spread = picture.spread;
 }
 
-/// Returns the existing view, or a new one, made in `own`.
+/// Returns the existing view, or makes a new one in `own` and returns it.
 static const R(cast_view) * R(view_of)(const glint_cast_args *args, glint_cast_view *own)
 {
     glint_cast_view *view = args->view ? args->view : own;
@@ -94,7 +95,7 @@ static inline bool R(may_show)(const R(candidate) * candidate, const float middl
     return !(reach * reach < DOT(v, v));
 }
 
-/// Lists the candidates that a tile may show, at most `most`. Returns their number.
+/// Lists at most `most` candidates that a tile may show. Returns their number.
 static int R(candidates_in)(const R(cast_view) * view, const glint_camera_args *camera, const R(candidate) * *list, int most)
 {
     const double down = camera->group_count / camera->groups_across;

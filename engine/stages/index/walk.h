@@ -1,12 +1,13 @@
-// walk: the boxes of the index that a tile, a shaft or a ray may touch, sixteen at a time. All of this is float and
-// conservative: a box is only rejected if it certainly is not touched, including rounding and NaN. Decisions about
-// boxes never change a picture.
+// walk: finds the boxes of the index that a tile, a shaft or a ray may touch, sixteen at a time. All of this is float
+// and conservative: a box is only rejected if it is certainly not touched, including rounding and NaN. Decisions
+// about boxes never change a picture.
 #ifndef GLINT_INDEX_WALK_H
 #define GLINT_INDEX_WALK_H
 
 #include "engine/stages/simd/elementary.h"
 
-#define WALK_SLACK 0x1p-21f ///< relative to the operands of a difference; their rounding errors are at most 2^-24 each
+#define WALK_SLACK 0x1p-21f ///< error bound of a difference, relative to the operands, whose rounding errors are at
+    ///< most 2^-24 each
 #define WALK_STACK (GLINT_BVH_DEPTH * (GLINT_NODE_WIDTH - 1) + 1)
 
 static inline float larger(float a, float b) { return a > b ? a : b; }
@@ -40,7 +41,7 @@ static inline void box_along(const vf middle[3], const vf half[3], const float a
 // ---- A shaft: all segments from a box of points to a light's box (for a point light, a point), or along one
 // direction ----
 
-/// Grows a box by the rounding of its points and by `slack`.
+/// Enlarges a box by the rounding error of its points and by `slack`.
 static inline void loosen(float lower[3], float upper[3], float slack)
 {
     for (int k = 0; k < 3; k++) {
@@ -50,7 +51,7 @@ static inline void loosen(float lower[3], float upper[3], float slack)
     }
 }
 
-/// The position of a light, in the index's frame.
+/// The bounding box of a light, in the index's frame.
 typedef struct light_bounds {
     float lower[3], upper[3]; ///< directional: both are the direction towards the light
     bool directional;
@@ -60,7 +61,7 @@ typedef struct light_shaft {
     float lower[3], upper[3]; ///< the bounding box of the shaft; infinite where it is unbounded
     int plane_count;
     int axis[6][2]; ///< the normal of each plane lies in one coordinate plane:
-    float normal[6][2], bound[6]; ///< inside, normal . x <= bound
+    float normal[6][2], bound[6]; ///< points inside the shaft have normal . x <= bound
 } light_shaft;
 
 static inline float reach_of(float x, float lower, float upper) { return larger(x * lower, x * upper); }
@@ -77,8 +78,8 @@ static inline void distances_to_line(int a, int b, float x, float y, float ex, f
     *least = smaller(left_x, right_x) + smaller(left_y, right_y);
 }
 
-/// Adds a plane of the axes a, b through (x, y) along (ex, ey), if the points and the light are on one side of it.
-/// `wide`: the light is not a point.
+/// Adds the plane that, seen in the axes a and b, is the line through (x, y) along (ex, ey), if all points and the
+/// light are on one side of the plane. `wide`: whether the light is larger than a point.
 static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
                                    const float lower[3], const float upper[3], const light_bounds *light, bool wide)
 {
@@ -97,7 +98,7 @@ static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, fl
     shaft->normal[p][1] = ny;
     const float size = fabsf(nx) * largest_of(lower[a], upper[a]) + fabsf(ny) * largest_of(lower[b], upper[b]);
     float bound = reach_of(nx, lower[a], upper[a]) + reach_of(ny, lower[b], upper[b]), far = 0;
-    if (!light->directional) // the light touches the line within rounding, which grows with the distance
+    if (!light->directional) // the light touches the line only within a rounding error, which grows with the distance
         far = fabsf(nx) * largest_of(light->lower[a], light->upper[a]) +
               fabsf(ny) * largest_of(light->lower[b], light->upper[b]);
     if (wide)
@@ -122,7 +123,7 @@ static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const floa
     }
 }
 
-/// Makes a shaft. lower, upper: box of the points, in the index's frame.
+/// Makes a shaft. lower, upper: corners of the points' box, in the index's frame.
 static void make_shaft(const float lower[3], const float upper[3], const light_bounds *light, light_shaft *shaft)
 {
     shaft->plane_count = 0;
@@ -165,12 +166,12 @@ static unsigned boxes_in_shaft(const glint_node *node, const light_shaft *shaft)
 
 typedef struct ray_view {
     float origin[3], slack; ///< in the index's frame
-    float inverse[3]; ///< 1 / direction, infinite if a component is 0: with any finite substitute the ray would drift
-        ///< away
+    float inverse[3]; ///< 1 / direction, infinite if a component is 0, because with any finite number the ray would
+        ///< drift off its line
 } ray_view;
 
-/// Returns the boxes that the ray may enter before `far` (in units of its direction), and computes where it enters
-/// each.
+/// Returns the boxes that the ray may enter before `far` (in lengths of the ray's direction), and computes the
+/// distance at which the ray enters each box.
 static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float far, float depth[GLINT_NODE_WIDTH])
 {
     unsigned inside = 0;
@@ -190,13 +191,13 @@ static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float 
     return inside;
 }
 
-/// Returns whether to stop. Long traversals check it from time to time.
+/// Returns whether the call should stop. Long traversals check this from time to time.
 static inline bool is_stopped(const atomic_bool *stop)
 {
     return stop && atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-/// Adds the number of lanes that are decided for a primitive.
+/// Adds the number of lanes for which a primitive is decided.
 static inline void count_tests(uint64_t *tests, unsigned lanes)
 {
     if (tests)
@@ -211,8 +212,8 @@ static inline bool is_open(const glint_solid *solid)
     return solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
 }
 
-/// Returns whether a ray that leaves the solid outwards may hit it again, so that it casts a shadow on itself: only a
-/// torus.
+/// Returns whether a ray that leaves the solid outwards may hit it again, so that the solid casts a shadow on itself.
+/// Only a torus does.
 static inline bool is_torus(const glint_geometry_table *table, const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form == GLINT_FORM_TORUS;
@@ -225,7 +226,7 @@ typedef struct walk_entry {
     float depth;
 } walk_entry;
 
-/// Sorts the slots of `mask` into `order`, nearest first. Returns their number.
+/// Sorts the slots of `mask` into `order`, nearest first. Returns the number of slots.
 static inline int sort_slots(unsigned mask, const float depth[GLINT_NODE_WIDTH], int order[GLINT_NODE_WIDTH])
 {
     int count = 0;

@@ -113,9 +113,9 @@ static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const 
 }
 
 /// Classifies an occluder by its bounding ball. The ball is apart from the cone from the point around the light if a
-/// plane that touches the ball has both the point and the light on the other side. Three planes are tried: one along
-/// the side of the cone, and two perpendicular to the cone's axis, at the point and at the light. A sphere completely
-/// hides the light if it contains the cone's full width at some depth.
+/// plane that touches the ball has both the point and the light on the other side. Three planes are tried: along the
+/// side of the cone, perpendicular to the direction at the point, and perpendicular to it at the light. A sphere
+/// completely hides the light if it contains the cone's full width at some depth.
 static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const R(soft_occluder) * occluder,
                                             const glint_prim *prim, const float local[3][GLINT_GROUP])
 {

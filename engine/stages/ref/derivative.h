@@ -40,7 +40,8 @@ static glint_dual dual_cone(const glint_derivative_light *light, const glint_dua
     return falls ? dual_mul(step, dual_power(c, light->exponent)) : step;
 }
 
-/// Computes the direction from a point to a light with a position, before normalisation.
+/// Computes the distance of a light with a position, and the effect of the distance on the weight. s->direction is
+/// not normalised yet.
 static void add_distance(const glint_derivative_source *source, dual_shine *s, int i)
 {
     const glint_dual length2 = dual_dot(s->direction, s->direction);
