@@ -29,7 +29,7 @@ typedef struct glint_derivative_light {
     glint_dual position[3]; ///< directional: the unit vector towards the light; area light: the slope is shared by all
         ///< samples
     glint_dual coefficients[3], diffuse[3], specular[3];
-    glint_dual axis[3], outer, inverse, exponent; ///< of a spot, see glint_spot
+    glint_dual axis[3], outer, inverse, exponent; ///< the cone of a spot, see glint_spot
 } glint_derivative_light;
 
 /// How a surface moves: slopes in world space.
@@ -78,7 +78,7 @@ typedef struct glint_derivative_planes {
 /// A light, or one sample of a light, as seen from a group.
 typedef struct glint_derivative_source {
     const double *position[3]; ///< position of the light; directional: the unit vector towards the light
-    const double *normal[3]; ///< of the light's surface; only read for radiant lights
+    const double *normal[3]; ///< unit normals of the light's surface; only read for radiant lights
     const double *weight; ///< the share of the light that reaches the point; NULL: 1
     const double *tint[3], *tint_slope[3]; ///< the transmitted share of each colour; tint[0] NULL: 1
     bool radiant; ///< the light has the factor cos' / distance^2

@@ -28,7 +28,7 @@ typedef struct glint_camera_args {
     const double *pixel[2]; ///< column and row of each lane's pixel or, if `offset` is 0, of a point in that pixel;
         ///< NULL: each lane has the pixel at its position in the tile. Only for a perspective camera without a lens.
         ///< If set, groups_across is 1, and no pixel is before (x0, y0)
-    double end[2]; ///< with `pixel`: all pixels are before (end[0], end[1])
+    double end[2]; ///< only with `pixel`: all pixels are before (end[0], end[1])
     void *across, *down; ///< out, real, perspective: 3 times 16 numbers per column of groups, and per row of groups;
         ///< see below
     void *origin[3], *direction[3]; ///< out, real, orthographic or with a lens: one per ray
@@ -144,7 +144,7 @@ typedef struct glint_surface_args {
     const uint32_t *only; ///< the primitive that all hits share; NULL: unknown
     const glint_prim *prims;
     bool mixed; ///< prims has triangles or solids; false: the fields for them are not read
-    double scale; ///< of the table
+    double scale; ///< the table's scale
     const glint_solid *solids;
     const glint_corner_normals *corner_normals; ///< NULL: every triangle is shaded flat
     const glint_camera_args *camera; ///< the rays of a perspective camera; NULL: they are in `origin` and `direction`

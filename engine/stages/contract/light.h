@@ -64,7 +64,8 @@ typedef struct glint_light_args {
     const glint_shade_material *materials; ///< only `highlight` and `least` are read
     const uint16_t *dark;
     bool directional;
-    double position[3]; ///< of the light; directional: the unit vector towards it; not read for area lights
+    double position[3]; ///< position of the light; directional: the unit vector towards the light; not read for area
+        ///< lights
     const double *positions[GLINT_LIGHT_CHUNK]; ///< the positions of several lights that have neither samples nor
         ///< cones and differ only in position; positions[0] NULL: one light, at `position`
     double

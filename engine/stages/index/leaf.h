@@ -23,7 +23,7 @@ typedef struct leaf_on_screen {
     _Alignas(64) float edge[3][3][GLINT_NODE_WIDTH];
     _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< smallest w
     _Alignas(64) float least[2][GLINT_NODE_WIDTH], most[2][GLINT_NODE_WIDTH]; ///< bounds of the screen positions
-    unsigned certain, negative; ///< slots with finite edge functions; of these, those with a negative determinant
+    unsigned certain, negative; ///< slots with finite edge functions; of these, the slots with a negative determinant
 } leaf_on_screen;
 
 /// A vector of VF triangles in the coordinates of the screen.

@@ -11,7 +11,7 @@
 typedef struct R(cone) {
     vd point[3], away[3]; ///< away: vector from the point to the ball's centre, in the light's units
     vd axis[3], tangent[3], bitangent[3];
-    vd distance, length2, sine, sine2, part; ///< of `away`; q, q2 and h of cone_sample.h
+    vd distance, length2, sine, sine2, part; ///< length and squared length of `away`; q, q2 and h of cone_sample.h
     vd before, beyond; ///< squares: of the length of a tangent, for points outside; of half the chord, for points
         ///< inside
     dm within;

@@ -70,7 +70,7 @@ static inline void R(add_segment)(R(layers) * l, const glint_prim *prim, uint32_
 
 // ---- The filter ----
 
-/// Bit masks of the segments of a run that may be blocked, and of those that certainly are.
+/// Bit masks of the segments of a run that may be blocked, and of the segments that certainly are.
 typedef struct layer_lanes_hit {
     unsigned near, certain;
 } layer_lanes_hit;

@@ -96,7 +96,7 @@ INNER unsigned R(find_ball_part)(const glint_surface_args *surface, const R(ball
 }
 
 /// Computes the parts of a group. Returns whether the camera is near enough to the spheres of all lanes in `hits`;
-/// *back: of these, those seen from behind.
+/// *back: the lanes of `hits` that are seen from behind.
 INNER bool R(find_ball_parts)(const glint_surface_args *surface, const R(ball_lanes) * balls, R(group_cursor) cursor,
                               unsigned hits, R(plain_part) * parts, unsigned *back)
 {

@@ -26,9 +26,8 @@ static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
     return f_max_all(far);
 }
 
-/// Marks as blocked those of the points from[0] .. from[15] that are in `blocked` and still unoccluded. If such a
-/// point was the farthest of its cell, the cell's maximum is computed again, once for consecutive points of the same
-/// cell.
+/// Marks the points from[0] .. from[15] that are in `blocked` and still unoccluded as blocked. If such a point was
+/// the farthest of its cell, the cell's maximum is computed again, once for consecutive points of the same cell.
 static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigned blocked)
 {
     const uint32_t none = BEAM_DOWN * SCREEN_ACROSS;

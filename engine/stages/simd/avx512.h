@@ -203,7 +203,8 @@ static inline vq q_xor(vq a, vq b) { return _mm512_xor_si512(a, b); }
 /// Returns the 64-bit products of the unsigned lower 32 bits.
 static inline vq q_mul(vq a, vq b) { return _mm512_mul_epu32(a, b); }
 
-/// Returns the lanes in which the bits that are set in `bits` (32 bits) have the values that they have in `value`.
+/// Returns the lanes in which x has the same bits as `value` at the positions that are set in `bits`, which are all
+/// among the lower 32.
 static inline dm q_is(vq x, uint32_t bits, uint32_t value)
 {
     return value ? _mm512_cmpeq_epi64_mask(q_and(x, q_set(bits)), q_set(value)) : _mm512_testn_epi64_mask(x, q_set(bits));

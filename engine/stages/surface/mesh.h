@@ -44,7 +44,7 @@ static inline unsigned R(mesh_lanes)(const glint_surface_args *args, size_t at, 
     return found;
 }
 
-/// Stores the materials of the given lanes. Returns those of the lanes whose surface is one-sided.
+/// Stores the materials of the given lanes. Returns the lanes whose surface is one-sided.
 static inline unsigned R(put_materials)(const glint_surface_args *args, size_t at, unsigned lanes)
 {
     unsigned one_sided = 0;
