@@ -40,8 +40,9 @@ typedef struct glint_camera_args {
 // direction perspective: direction = (forward + sx right) + sy up. The first term is stored in across, the second in
 // down:
 //   component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
-// orthographic: direction = forward, origin = (eye + sx right) + sy up with a lens, in each lane: bend is subtracted
-// from the direction, and shift is added to the origin (perspective: to the eye)
+// orthographic: direction = forward, origin = (eye + sx right) + sy up
+// with a lens, in each lane: bend is subtracted from the direction, and shift is added to the origin (perspective: to
+// the eye)
 
 // ---- cast: the nearest hit of each ray ----
 
@@ -83,9 +84,10 @@ typedef struct glint_cast_args {
     0x1p-10 ///< relative to the scene: a ray that stays in a triangle's plane for longer than this counts as lying in
         ///< the plane
 // in_sight reads only active, geometry, camera and view. false: no ray of the camera's tile can hit anything. Then
-// cast_bundle reads no directions. The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it if 0 < t <
-// inf and (t < best, or t == best and its id is lower). Index and filter may only reject primitives that the formulas
-// below would miss. The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. The methods, and their reasons:
+// cast_bundle reads no directions.
+// The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it if 0 < t < inf and (t < best, or t == best and
+// its id is lower). Index and filter may only reject primitives that the formulas below would miss.
+// The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. The methods, and their reasons:
 //   sphere: from the distance between the line and the centre if the ray begins far away, from b^2 - a c if it begins
 //     close. c is exact, by error-free sums and products, so that points on the surface are distinguished from points
 //     next to it
@@ -107,11 +109,12 @@ typedef struct glint_cast_args {
 //     the plane of a triangle.
 // A ray never hits the primitive that it leaves, with one exception: a ray in an `inward` lane, which starts on or
 // inside of a sphere or a solid other than a disk, always hits it again, at GLINT_LEAST_T or beyond. A ray that
-// leaves a torus outwards can hit it again, too. A ray that leaves triangle A hits another triangle B like any other
-// ray, with two exceptions: the ray lies in both planes within rounding, or it does not cross B and the offset of its
-// origin may have moved it over a common edge. In these two cases the ray hits B if a corner of B is above A on the
-// ray's side, a corner of A is above B on the other side, and the ray is at B within rounding. So of two faces that
-// share an edge, the ray hits the other face exactly if it goes between them.
+// leaves a torus outwards can hit it again, too.
+// A ray that leaves triangle A hits another triangle B like any other ray, with two exceptions: the ray lies in both
+// planes within rounding, or it does not cross B and the offset of its origin may have moved it over a common edge.
+// In these two cases the ray hits B if a corner of B is above A on the ray's side, a corner of A is above B on the
+// other side, and the ray is at B within rounding. So of two faces that share an edge, the ray hits the other face
+// exactly if it goes between them.
 
 // ---- scan: the nearest triangle of each ray, from a list of the triangles that a tile may show ----
 
@@ -164,14 +167,16 @@ typedef struct glint_surface_args {
 // Groups without a hit only get back = dark = 0. In other groups, lanes without a hit get point = normal = 0 and
 // material = 0. If `slack` is not NULL, it is -(point_slack |point|_max) in lanes that hit something other than a
 // triangle: the bound of the point's rounding error, marked by the sign. Points of faces and planes perpendicular to
-// an axis of the world have that coordinate exactly. If only points are computed (not for a mixed table), `box` and
-// `slack` are NULL, and material, back and dark are not written. The arithmetic: ref/real.h, ref/triangle.h,
-// ref/solid.h. The normal of a close sphere is not normalised: its length is 1 within F^2 + 8 roundings, F = |origin
-// - center| / radius, because the error of t moves the point along the ray, and grows as 1 / cos i for a point seen
-// at an angle i. The normal of a sphere further away is normalised. The normal of a very distant sphere is computed
-// from the line's distance from the centre. The slack of a triangle holds for corner weights within [0, 1 + 2^-50]:
-// it covers one rounding each for the edges, the products, their sum and the point. The geometric normal decides
-// `back`, also for smooth triangles. The point of a solid is projected onto its surface.
+// an axis of the world have that coordinate exactly.
+// If only points are computed (not for a mixed table), `box` and `slack` are NULL, and material, back and dark are
+// not written.
+// The arithmetic: ref/real.h, ref/triangle.h, ref/solid.h. The normal of a close sphere is not normalised: its length
+// is 1 within F^2 + 8 roundings, F = |origin - center| / radius, because the error of t moves the point along the
+// ray, and grows as 1 / cos i for a point seen at an angle i. The normal of a sphere further away is normalised. The
+// normal of a very distant sphere is computed from the line's distance from the centre. The slack of a triangle holds
+// for corner weights within [0, 1 + 2^-50]: it covers one rounding each for the edges, the products, their sum and
+// the point. The geometric normal decides `back`, also for smooth triangles. The point of a solid is projected onto
+// its surface.
 
 #define GLINT_SPHERE_NEAR 0x1p40
 #define GLINT_SPHERE_CLOSE_DOUBLE 0x1p8
