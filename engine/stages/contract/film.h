@@ -112,7 +112,7 @@ typedef struct glint_shade_planes {
     const float *shininess, *alpha;
     double ambient_light[3]; ///< factor of the planes of ambient reflectances
     const float *shaded[2][3]; ///< diffuse and specular terms for materials of GLINT_PLANE_SHADED: read in lanes that
-    ///< a light reaches; in the other lanes the terms are 0; NULL: 0. Not read if there are sums
+    ///< a light reaches; in the other lanes the terms are 0; NULL: 0. Not read if `sum` is set
 } glint_shade_planes;
 
 typedef struct glint_shade_args {
@@ -155,10 +155,10 @@ typedef struct glint_resolve_args {
 // term = (float)(sum / samples); beauty as in shade, then ((beauty + indirect) + mirror) + transmission, of the terms
 // that the frame has
 
-// resolve_samples: like shade for each of `count` samples in turn, with sums that begin at 0, followed by resolve.
-// All samples have `first`, and at most GLINT_LIGHT_CHUNK `lights` in total. They share groups, active, background,
-// highlights, film and beauty. Groups without an active lane leave film and beauty unchanged. `sum` is not read, and
-// no material is of GLINT_PLANE_SHADED.
+// resolve_samples: does the same as shade for each of `count` samples in turn, with sums that begin at 0, followed by
+// resolve. All samples have `first`, and at most GLINT_LIGHT_CHUNK `lights` in total. The samples share groups,
+// active, background, highlights, film and beauty. Groups without an active lane leave film and beauty unchanged.
+// `sum` is not read, and no material is of GLINT_PLANE_SHADED.
 
 // ---- estimate, range, differ: which neighbouring pixels differ, for adaptive sampling ----
 
@@ -184,8 +184,8 @@ typedef struct glint_estimate_args {
 
 typedef struct glint_range_args {
     uint32_t count; ///< a multiple of GLINT_GROUP, above 0
-    float gain, floor, top; ///< numbers are multiplied by the gain. Then those below `floor`, and NaN, become `floor`,
-        ///< and those above `top` become `top`
+    float gain, floor, top; ///< numbers are multiplied by the gain. Then numbers below `floor`, and NaN, become
+        ///< `floor`, and numbers above `top` become `top`
     const float *numbers;
 } glint_range_args;
 // range: the minimum and maximum of the numbers.
@@ -193,13 +193,13 @@ typedef struct glint_range_args {
 /// Two adjacent lines of pixels, p[0] .. and q[0] .., both rows or both columns. Each value of a line is an array of
 /// GLINT_DIFFER_LENGTH numbers or more.
 typedef struct glint_differ_args {
-    const float *const *p, *const *q; ///< GLINT_DIFFER_VALUES each: object number, normal, estimates. q NULL: there is
-        ///< no second line
+    const float *const *p, *const *q; ///< GLINT_DIFFER_VALUES arrays for each line: object number, normal, estimates.
+        ///< q NULL: there is no second line
     uint32_t count; ///< number of pairs (p[i], q[i])
     uint32_t ahead; ///< number of diagonal pairs, and of pairs along a line. Both counts are at most
         ///< GLINT_DIFFER_PAIRS
-    bool along; ///< the pixels of p are compared with each other, too
-    bool alpha; ///< the estimates have four channels, otherwise three
+    bool along; ///< true: adjacent pixels of p are also compared with each other
+    bool alpha; ///< true: the estimates have four channels; false: three
     float low, high; ///< limits for the sum of the differences of two pixels' estimates: below `low` the pixels
         ///< certainly have the same colour, above `high` they certainly differ
     float cosine; ///< two normals differ if the cosine of their angle is below this

@@ -37,8 +37,8 @@ typedef struct glint_camera_args {
 //   px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
 //   sx = 2 px - width, sy = height - 2 py, all computed in double, then rounded to real
 // if `pixel` is set: px = pixel[0][16 g + i] + offset[0], py likewise; `across` holds -0, and `down` holds the whole
-// direction perspective: direction = (forward + sx right) + sy up. The first term is stored in across, the second in
-// down:
+// direction
+// perspective: direction = (forward + sx right) + sy up. The first term is stored in across, the second in down:
 //   component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
 // orthographic: direction = forward, origin = (eye + sx right) + sy up
 // with a lens, in each lane: bend is subtracted from the direction, and shift is added to the origin (perspective: to

@@ -45,8 +45,8 @@ typedef struct glint_light_sample {
     double lower[3], upper[3]; ///< a box around the whole light
     uint32_t emission;
 } glint_light_sample;
-/// A point counts as on the sphere's surface if it is this close to it, relative to the point's distance from the
-/// centre.
+/// Relative to a point's distance from the sphere's centre: a point this close to the surface counts as on the
+/// surface.
 #define GLINT_CONE_SLACK_DOUBLE 0x1p-40
 #define GLINT_CONE_SLACK_FLOAT 0x1p-18
 // GLINT_EMIT_CONE: each lane's sample is computed by cone_sample.h, in double even if real is float. A point on the
@@ -139,15 +139,15 @@ typedef struct glint_light_grid {
     double position[3]; ///< as in glint_occlude_args
     double origin[3]; ///< the light's position; directional: the index's origin
     double axis[3][3]; ///< the axes across, down, and away from the light; their length is the index's unit
-    float first[2], cells; ///< projected position of the first cell, cells per unit
-    uint32_t count[2]; ///< columns and rows
+    float first[2], cells; ///< first: projected position of the first cell; cells: number of cells per unit
+    uint32_t count[2]; ///< number of columns and rows
     float nearest, slices; ///< nearest: the smallest `near`, above 0 if the light has a position; slices: number of
         ///< depth slices per unit of w, counted from `nearest`
     bool sorted; ///< in each cell the entries are in order of `near`
     const uint32_t *begin; ///< index of each cell's first entry, row by row, and the end of the last cell's entries
     // One element for each entry, which is a sphere in a cell, and GLINT_GROUP undefined elements more:
     const uint32_t *center; ///< position of the sphere's centre, in steps from the point GLINT_GRID_ASIDE before the
-        ///< cell: across + 2^16 down
+        ///< cell: position across + 2^16 times position down
     const uint32_t *size; ///< the radius, and `near` in the bits above. A segment at the projected position (u, v)
         ///< that hits the sphere, whose centre is (du, dv) away, has du^2 + dv^2 <= radius^2 (1 + u^2 + v^2);
         ///< directional: <= radius^2. All points that the sphere blocks have (w - nearest) slices >= `near`
@@ -170,7 +170,7 @@ typedef struct glint_occlude_args {
     double position[3]; ///< as in glint_light_args
     double scale; ///< as in glint_light_args
     const glint_geometry_table *geometry;
-    const glint_light_grid *grid; ///< of this light and geometry; NULL: none
+    const glint_light_grid *grid; ///< the grid of this light and geometry; NULL: there is none
     const atomic_bool *stop; ///< as in glint_cast_args
     const glint_camera_args *camera; ///< the rays of a perspective camera that hit the points; NULL: the directions are
         ///< in `direction`
@@ -193,8 +193,9 @@ typedef struct glint_occlude_args {
 } glint_occlude_args;
 // Below, `position` is the position of the light in each lane. light_side of a primitive is a double: > 0 if the
 // light is outside of a sphere or a solid, < 0 if it is inside; for a plane it has the sign of the light's height
-// over the plane. A lane is blocked by any other primitive with 0 < t < 1 on the segment from the point to the light.
-// The arithmetic: ref/occlude.h, ref/triangle.h, ref/solid.h. A point's own primitive blocks it as follows:
+// over the plane. Any primitive except the point's own blocks a lane if the segment from the point to the light hits
+// it at 0 < t < 1. The arithmetic: ref/occlude.h, ref/triangle.h, ref/solid.h. A point's own primitive blocks the
+// light as follows:
 //   sphere: if `back` and the light is outside
 //   plane: never
 //   triangle: depending on the side of its plane that the light is on. A flat mesh casts no shadow on itself,
