@@ -78,7 +78,7 @@ static inline double glint_sphere_scale(const glint_prim *prim)
     uint64_t bits;
     double scale;
     memcpy(&bits, &prim->radius, sizeof bits);
-    const uint64_t exponent = 2046 - (bits >> 52); // of 2^e it is 1023 + e
+    const uint64_t exponent = 2046 - (bits >> 52); // the exponent field of 2^e is 1023 + e
     bits = (exponent > 1 ? exponent : 1) << 52;
     memcpy(&scale, &bits, sizeof scale);
     return scale;
@@ -188,7 +188,7 @@ typedef struct glint_combined {
     uint32_t count; ///< number of parts
     uint32_t length; ///< length of the program
     float lower[3], upper[3]; ///< a bounding box, as for a solid
-    // sets of parts, one bit each:
+    // Sets of parts, one bit for each part:
     uint64_t all; ///< every part, if the program has no empty set; otherwise 0
     uint64_t needs; ///< if any one of these parts is empty, the whole is empty
     uint64_t alone; ///< each of these parts is the whole if all other parts are empty
@@ -196,8 +196,8 @@ typedef struct glint_combined {
 } glint_combined;
 
 /// A closed mesh that is a part of a combined solid. Its triangles are prims[prim_count + first] and the following,
-/// in order of definition. They run counter-clockwise as seen from outside of the whole. A hit is stored with the
-/// index of the triangle.
+/// in order of definition. Their corners run counter-clockwise as seen from outside of the whole. A hit is stored
+/// with the index of the triangle.
 typedef struct glint_hull {
     uint32_t first, count;
     const glint_node *nodes; ///< a tree over the triangles, in the index's frame; a GLINT_NODE_PRIM child is the

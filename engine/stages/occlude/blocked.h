@@ -397,9 +397,9 @@ typedef struct R(sphere_lanes) {
     unsigned within; ///< lanes of `near` whose segment certainly passes through the inside
 } R(sphere_lanes);
 
-/// Classifies a sphere. The sphere is not near a segment if the segment's line misses it, or if it is behind the
-/// segment's start and does not contain it. For certain hits, the radius is reduced by as much as the filter enlarges
-/// it.
+/// Classifies a sphere. The sphere is not near a segment if the segment's line misses it, or if the sphere is behind
+/// the segment's start and does not contain the start. For certain hits, the radius is reduced by as much as the
+/// filter enlarges it.
 static R(sphere_lanes) R(sort_by_sphere)(const R(shadow_tile) * tile, const R(ray_group) * rays, const glint_prim *prim)
 {
 #if GLINT_REAL == 64
