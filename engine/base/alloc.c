@@ -30,8 +30,8 @@ void *glint_alloc(size_t count, size_t size)
     return memory;
 }
 
-/// Asks the system for large pages. The part after the last whole large page stays in small pages, as does all if it
-/// refuses.
+/// Asks the system for large pages. The part after the last whole large page stays in small pages, and so does the
+/// whole block if the system refuses.
 static void want_large_pages(void *memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
@@ -54,8 +54,8 @@ void *glint_alloc_large(size_t count, size_t size)
     return memory;
 }
 
-#define PAGED_FROM ((size_t)256 << 10) ///< bytes from which blocks are mapped, because the C library may not return
-    ///< heap memory to the system
+/// Blocks of at least this many bytes are mapped, because the C library may not return
+#define PAGED_FROM ((size_t)256 << 10)
 
 void *glint_scratch_resize(void *memory, size_t from, size_t to)
 {

@@ -7,16 +7,16 @@
 /// Returns zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees
 /// it.
 void *glint_alloc(size_t count, size_t size);
-/// Returns the same without zeroing, in large pages where the system has them: for megabytes that are written at
-/// once.
+/// Returns the same memory as glint_alloc, but not zeroed, and in large pages where the system has them. For
+/// megabytes that are written at once.
 void *glint_alloc_large(size_t count, size_t size);
 
-/// Resizes a block for short-lived data; from 0: allocates one. The memory is not zeroed and is aligned to 16 bytes.
-/// A large block goes back to the system as soon as it is freed, so that it does not add to the peak of later
-/// allocations. NULL: out of memory, and the old block stays.
+/// Resizes a block for short-lived data from `from` to `to` bytes; with `from` 0 it allocates a block. The memory is
+/// not zeroed and is aligned to 16 bytes. A large block goes back to the system as soon as it is freed, so that it
+/// does not add to the peak of later allocations. NULL: out of memory, and the old block stays.
 void *glint_scratch_resize(void *memory, size_t from, size_t to);
-/// Returns the pages between two bytes of a block to the system; their contents are lost. bytes: size of the block,
-/// as last resized.
+/// Gives the pages between two bytes of a block back to the system; their contents are lost. bytes: the size of the
+/// block since it was last resized.
 void glint_scratch_drop(void *memory, size_t bytes, size_t from, size_t to);
 void glint_scratch_free(void *memory, size_t bytes);
 

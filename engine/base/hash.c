@@ -7,7 +7,8 @@
 glint_key glint_key_add(glint_key key, const void *bytes, size_t size)
 {
     const XXH128_hash_t part = XXH3_128bits_withSeed(bytes, size, key.low);
-    // The part's seed carries the low half; the high half and the length are folded in by a second, short hash.
+    // The seed of the hash of `part` carries the low half of the key; a second, short hash folds in the high half and
+    // the length.
     const uint64_t chain[5] = { key.high, key.low, part.high64, part.low64, size };
     const XXH128_hash_t sum = XXH3_128bits(chain, sizeof chain);
     return (glint_key) { sum.high64, sum.low64 };

@@ -9,7 +9,7 @@ typedef struct glint_list {
     void **items;
     size_t count, capacity;
     uint32_t *slots;
-    size_t slot_count; ///< a power of two, at least twice `capacity`
+    size_t slot_count; ///< number of slots: a power of two, at least twice `capacity`
 } glint_list;
 
 /// Returns the index of `object`, or list->count if it is not in the list.

@@ -26,7 +26,7 @@ static inline glint_value glint_maker_number(glint_maker *m, double number)
     return out;
 }
 
-/// Applies an operation to up to three values; operands beyond its number are ignored.
+/// Applies an operation to up to three values; operands that the operation does not have are ignored.
 static inline glint_value glint_maker_apply3(glint_maker *m, glint_op op, glint_value a, glint_value b, glint_value c)
 {
     const glint_value operands[] = { a, b, c };
@@ -42,9 +42,9 @@ static inline glint_value glint_maker_apply(glint_maker *m, glint_op op, glint_v
     return glint_maker_apply3(m, op, a, b, 0);
 }
 
-/// Applies an operation to a value and a number. A builder numbers values in the order in which they are made, and C
-/// does not define the order of arguments. The number is made here, after the value, so that every compiler makes the
-/// same program.
+/// Applies an operation to a value and a number. A builder numbers its values in the order of their creation, and C
+/// does not define in which order it evaluates arguments. So the number is made here, after the value, and every
+/// compiler makes the same program.
 static inline glint_value glint_maker_with(glint_maker *m, glint_op op, glint_value a, double number)
 {
     const glint_value b = glint_maker_number(m, number);

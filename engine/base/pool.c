@@ -19,7 +19,7 @@ struct worker {
 };
 
 struct glint_pool {
-    pthread_mutex_t turn; ///< held by the caller whose items run; it is worker 0
+    pthread_mutex_t turn; ///< locked by the caller whose items run; that caller is worker 0
     pthread_mutex_t mutex; ///< protects all fields below; the job does not change while workers are busy
     pthread_cond_t work, done;
     unsigned long round; ///< counts the calls of glint_pool_run

@@ -38,7 +38,7 @@ static uint32_t reverse32(uint32_t x)
     return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
 }
 
-/// Flips each bit or not, depending only on the seed and on the lower bits.
+/// Flips each bit or leaves it, depending only on the seed and on the lower bits.
 static uint32_t flip_upwards(uint32_t x, uint32_t seed)
 {
     x ^= x * 0x9e3779b2u;
@@ -81,7 +81,7 @@ void glint_sequence_point(uint32_t k, int bits, double seed, double out[2])
             second ^= v;
     out[0] = (reverse(k, bits) + 0.5) / cells;
     out[1] = ((bits ? second >> (32 - bits) : 0) + 0.5) / cells;
-    if (seed > 0) { // golden-ratio steps: shifts of neighbouring seeds are far apart
+    if (seed > 0) { // Golden-ratio steps keep the shifts of neighbouring seeds far apart.
         out[0] += fmod(seed * 0x1.3c6ef372fe95p-1, 1);
         out[1] += fmod(seed * 0x1.83b2b3de7cfacp-1, 1);
         out[0] -= floor(out[0]);

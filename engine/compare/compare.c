@@ -10,7 +10,7 @@
 /// A picture of either format; one of the two pointers is NULL.
 typedef struct picture {
     int width, height, channels;
-    int bits; ///< of the integer pixel values
+    int bits; ///< bits of each integer pixel value
     void *codes;
     float *values;
 } picture;

@@ -14,8 +14,8 @@
 
 struct glint_flip {
     int width, height;
-    float *lab[3]; ///< L*, and a*, b* with Hunt's adjustment, of the blurred picture
-    float *edge, *point; ///< strength of the features
+    float *lab[3]; ///< L*, a* and b* (the last two with Hunt's adjustment) of the blurred picture
+    float *edge, *point; ///< strength of edges and of points in each pixel
 };
 
 /// A filter of 2 radius + 1 taps.
@@ -200,8 +200,8 @@ static void blur_channel(const glint_flip *size, workshop *w, int channel, doubl
     filter_columns(size, w->rows[0], &k, (float)weight, w->blurred[channel]);
 }
 
-/// Blurs by contrast sensitivity: for each channel a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, that sums
-/// to 1.
+/// Blurs by contrast sensitivity: each channel's filter is a sum of terms a sqrt(pi / b) exp(-pi^2 x^2 / b), x in
+/// degrees, normalised to 1.
 static void blur_colors(const glint_flip *size, workshop *w)
 {
     static const double blue_yellow[2][2] = { { 34.1, 0.04 }, { 13.5, 0.025 } }; // a, b
@@ -311,7 +311,7 @@ static double largest_distance(void)
     return color_distance(a, b);
 }
 
-/// Maps a distance to 0 .. 1, most of which is used for small differences.
+/// Maps a distance to 0 .. 1; small differences take most of this range.
 static double spread(double distance, double largest)
 {
     const double knee = GLINT_FLIP_PC * largest;

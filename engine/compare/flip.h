@@ -13,8 +13,8 @@
 /// The viewing conditions and constants of the paper.
 #define GLINT_FLIP_PPD 67.02064327658226 ///< pixels per degree: 3840 pixels over 0.7 m, seen from 0.7 m: 3840 pi/180
 #define GLINT_FLIP_QC 0.7 ///< exponent of the colour difference
-#define GLINT_FLIP_PC 0.4 ///< share of the largest colour difference that ...
-#define GLINT_FLIP_PT 0.95 ///< ... is mapped to 0 .. this
+#define GLINT_FLIP_PC 0.4 ///< share of the largest colour difference that is mapped to 0 .. GLINT_FLIP_PT
+#define GLINT_FLIP_PT 0.95 ///< end of that range; larger colour differences are mapped to GLINT_FLIP_PT .. 1
 #define GLINT_FLIP_W 0.082 ///< width of the feature detectors, degrees
 #define GLINT_FLIP_QF 0.5 ///< exponent of the feature difference
 

@@ -49,7 +49,7 @@ static glint_status make_codes(const glint_image *image, glint_tone_desc tone, i
     return status;
 }
 
-/// Returns pixel value number i in steps of 8 bits.
+/// Returns pixel value number i, converted to 8-bit steps.
 static double code_at(const codes *c, size_t i)
 {
     return c->bits == 16 ? ((const uint16_t *)c->rgb)[i] / 257.0 : ((const uint8_t *)c->rgb)[i];
@@ -92,8 +92,8 @@ static void decode(const codes *c, const float *table, size_t pixels, float *pla
     }
 }
 
-/// Compares pixel values after the tone on an sRGB screen, so that every tone curve is included; with 16 bits to
-/// compare the film itself.
+/// Compares pixel values after the tone on an sRGB screen, so that the tone curve counts, too. With 16 bits, compares
+/// the film itself.
 static glint_status prepare_flip(const glint_image *image, const glint_tone_desc *tone, int bits, glint_flip **out,
                                  glint_error *error)
 {

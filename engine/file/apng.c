@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CHUNK_BYTES ((size_t)1 << 20) // of one IDAT or fdAT
+#define CHUNK_BYTES ((size_t)1 << 20) // size of one IDAT or fdAT chunk
 
 typedef struct box {
     int x, y, width, height;
@@ -26,7 +26,7 @@ struct glint_apng {
     png_structp png;
     png_infop info;
     glint_error error; ///< the draft's error, set before libpng jumps
-    uint32_t sequence, frames; ///< the number of the next fcTL or fdAT; the frames added
+    uint32_t sequence, frames; ///< number of the next fcTL or fdAT chunk; number of frames added
     uint16_t delay[2]; ///< a frame's duration in seconds: numerator and denominator
     size_t pixel_bytes;
     uint8_t *before; ///< pixel values of the previous frame
@@ -94,7 +94,7 @@ static void write_control(glint_apng *apng, const box *b)
     put32(control + 16, (uint32_t)b->y);
     put16(control + 20, apng->delay[0]);
     put16(control + 22, apng->delay[1]);
-    control[24] = control[25] = 0; // the frame stays for the next one, and replaces the pixels below it
+    control[24] = control[25] = 0; // the frame stays until the next one, and replaces the pixels below it
     png_write_chunk(apng->png, (png_const_bytep) "fcTL", control, sizeof control);
 }
 
@@ -126,7 +126,8 @@ static bool write_end(glint_apng *apng)
 
 // ---- Beginning and end --------------------------------------------------------------------------------------------
 
-/// Sets the ratio of two 16-bit numbers nearest to 1/fps; among equals the one with the smallest numerator.
+/// Sets the ratio of two 16-bit numbers nearest to 1/fps; if several ratios are equally near, the one with the
+/// smallest numerator.
 static void set_delay(glint_apng *apng)
 {
     double least = HUGE_VAL;
@@ -247,7 +248,7 @@ static box find_changed(const glint_apng *apng, const uint8_t *codes)
 
 typedef struct part { ///< of a frame
     const uint8_t *codes;
-    size_t row_bytes, first; ///< first: the rectangle's first byte in a row
+    size_t row_bytes, first; ///< offset of the rectangle's first byte in a row
 } part;
 
 static const void *row_of_part(const void *user, int y, void *scratch)

@@ -22,8 +22,8 @@ typedef struct layout {
     bool alpha;
     glint_tone_desc tone;
     glint_encode encode;
-    size_t row_bytes; ///< without the filter's byte
-    size_t band_rows; ///< of every band except the last
+    size_t row_bytes; ///< bytes of a row, without the byte that names the filter
+    size_t band_rows; ///< rows of every band except the last
     size_t band_count, stamp_count;
 } layout;
 
@@ -37,8 +37,8 @@ typedef struct band {
 typedef struct picture {
     layout layout;
     band *band;
-    uint64_t *stamp; ///< of the rows of tiles in `band`; 0: missing or unknown
-    size_t *todo; ///< the bands that have to be made
+    uint64_t *stamp; ///< for each band, the stamp of its rows of tiles; 0: the band is missing or its content unknown
+    size_t *todo; ///< indices of the bands that have to be made
 } picture;
 
 /// Buffers of one thread for one band.
@@ -51,7 +51,7 @@ struct glint_bands {
     int threads;
     glint_pool *pool; ///< NULL: only the caller's thread
     picture last;
-    glint_bytes stream; ///< of the last picture
+    glint_bytes stream; ///< zlib stream of the last picture
     worker worker[];
 };
 
@@ -208,7 +208,7 @@ static void free_picture(picture *p)
     *p = (picture) { 0 };
 }
 
-/// Sets the layout of `p`. Bands made for the same layout stay.
+/// Sets the layout of `p`. Keeps the bands if the layout is unchanged.
 static bool lay_out(picture *p, const layout *l)
 {
     if (p->band && same_layout(&p->layout, l))

@@ -15,11 +15,11 @@
 
 #define TEMPORARY_TRIES 100
 #define TEMPORARY_EXTRA 160 // bytes that the temporary name adds to the file's name: host, process, number
-#define LINKS 40 // links followed in a chain, at most; the same limit as the system's
+#define LINKS 40 // most links followed in a chain; the same limit as the system's
 #define PIECE ((size_t)1 << 20) // bytes of one write, so that the growing size of the file shows progress
 
 struct glint_draft {
-    char *path; ///< as the caller gave it
+    char *path; ///< path as the caller gave it
     char *target; ///< final path: the end of a symbolic link
     char *temporary; ///< NULL: the target is a pipe or a device, written in place
     int file; ///< -1: closed
@@ -184,8 +184,8 @@ static char *folder_of(const char *path, const char **rest)
     return folder ? folder : strdup(""); // the current folder was deleted
 }
 
-/// Appends the next name of `rest` to `out` (*length bytes) and returns the remaining names. It can resolve `..` by
-/// removing a name, because folders that do not exist yet are not links.
+/// Appends the next name of `rest` to `out` (*length bytes) and returns the remaining names. It resolves `..` by
+/// removing the last name of `out`, because folders that do not exist yet are not links.
 static const char *add_name(const char *rest, char *out, size_t *length)
 {
     const size_t size = strcspn(rest, "/");

@@ -33,7 +33,7 @@ const char *glint_exr_library(void)
 typedef struct channel {
     char name[CHANNEL_NAME];
     const float *plane;
-    int of; ///< number of channels in its pass
+    int of; ///< number of channels in the pass of this channel
     bool half;
 } channel;
 

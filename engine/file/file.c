@@ -31,7 +31,7 @@ static int read_up_to(int file, size_t most, glint_bytes *out)
     return 0;
 }
 
-/// Returns the most bytes that a whole picture with this beginning can have. 0: no known picture format.
+/// Returns an upper bound for the bytes of a whole picture that begins like this. 0: no known picture format.
 static size_t picture_bound(const glint_bytes *head)
 {
     const uint64_t pfm = glint_pfm_bytes(head->data, head->size);

@@ -21,7 +21,7 @@ bool glint_is_jpeg(const uint8_t *data, size_t size)
 
 /// The data of libjpeg's callbacks, found through its `err`.
 typedef struct failing {
-    struct jpeg_error_mgr manager; ///< first, as libjpeg has its address
+    struct jpeg_error_mgr manager; ///< must be the first member, because libjpeg has only its address
     jmp_buf back;
     char message[JMSG_LENGTH_MAX];
 } failing;

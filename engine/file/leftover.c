@@ -22,8 +22,8 @@
 #include <unistd.h>
 
 #define FOREIGN_AGE_S (24 * 3600)
-#define FOLDERS_CACHED 16 // the folders searched most recently
-#define LIVE_MAX 64 // drafts that a signal removes, at most
+#define FOLDERS_CACHED 16 // number of recently searched folders that are remembered
+#define LIVE_MAX 64 // most drafts that a signal removes
 
 void glint_host_name(char out[GLINT_HOST_SIZE])
 {
@@ -67,7 +67,7 @@ static bool is_draft(const char *name, const char *host, long *process, bool *is
     return length > 1;
 }
 
-/// Returns whether the file's process is gone, as far as this process can tell.
+/// Returns whether the process that wrote the file is gone, as far as this process can tell.
 static bool is_leftover(int folder, const char *name, long process, bool is_ours, const struct stat *info)
 {
     if (!S_ISREG(info->st_mode) || info->st_uid != geteuid())

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#define HEAD_ALIGN 64 // bytes, of everything before the values
+#define HEAD_ALIGN 64 // The size of everything before the values is a multiple of this; bytes
 
 bool glint_npy_encode(int width, int height, int channels, float *const plane[], glint_bytes *out)
 {

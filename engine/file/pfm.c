@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define HEADER_FIELDS 4 // "PF", width, height, scale
+#define HEADER_FIELDS 4 // number of words in the header: "PF", width, height, scale
 
 static void put_little_endian(float value, uint8_t *out)
 {

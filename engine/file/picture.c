@@ -17,9 +17,9 @@ typedef struct entry { ///< a text
 } entry;
 
 struct glint_picture {
-    glint_png_head head; ///< bits 32: a .pfm
-    void *codes; ///< of a .png; NULL: not read
-    float *values; ///< of a .pfm; otherwise NULL
+    glint_png_head head; ///< size and format; bits 32: the file is a .pfm
+    void *codes; ///< pixel values of a .png; NULL: not read
+    float *values; ///< values of a .pfm; otherwise NULL
     uint8_t *viewed; ///< the 8-bit sRGB value for each pixel value
     entry *texts;
 };

@@ -18,7 +18,7 @@ typedef struct glint_png_source {
     /// order and by several threads.
     const void *(*row)(const void *user, int y, void *scratch);
     const void *user;
-    const uint64_t *stamp; ///< of the rows of tiles, as in glint_image; NULL: the pixel values are unknown
+    const uint64_t *stamp; ///< stamps of the rows of tiles, as in glint_image; NULL: the pixel values are unknown
 } glint_png_source;
 
 /// Returns the bytes of one pixel.
@@ -45,7 +45,7 @@ glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source
 typedef struct glint_png {
     int width, height;
     int channels; ///< 1 .. 4: grey, grey and alpha, RGB, RGB and alpha
-    int bits; ///< 8 or 16; fewer are widened to 8, palettes become RGB
+    int bits; ///< bits per channel after decoding, 8 or 16: fewer are widened to 8, and palettes become RGB
     void *codes; ///< uint8_t or uint16_t (native order), interleaved; the owner calls free
 } glint_png;
 
@@ -62,8 +62,8 @@ bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, c
 
 typedef struct glint_png_head {
     int width, height;
-    int bits; ///< as decoded: 8 or 16
-    int channels; ///< as decoded, 1 .. 4
+    int bits; ///< bits per channel after decoding: 8 or 16
+    int channels; ///< channels after decoding, 1 .. 4
     glint_transfer transfer; ///< linear: gAMA is 1.0; otherwise sRGB is assumed
     bool is_animated; ///< several frames
 } glint_png_head;

@@ -125,7 +125,7 @@ static bool is_text(const uint8_t *body, size_t size, const char *keyword, const
 /// One chunk of a PNG in memory.
 typedef struct chunk {
     const uint8_t *type, *body;
-    uint32_t size; ///< of the body, bytes
+    uint32_t size; ///< size of the chunk's body, bytes
 } chunk;
 
 static bool is_type(const chunk *c, const char *type) { return memcmp(c->type, type, 4) == 0; }
@@ -202,7 +202,7 @@ static glint_status refuse_ihdr(const chunk *c, glint_error *error)
 
 /// Facts from earlier chunks that decide whether a tRNS chunk counts.
 typedef struct seen_chunks {
-    int color; ///< of IHDR: 0 grey, 2 RGB, 3 palette
+    int color; ///< colour type in IHDR: 0 grey, 2 RGB, 3 palette
     uint32_t palette; ///< entries
     bool pixels;
 } seen_chunks;

@@ -22,13 +22,16 @@ typedef struct picture {
     float *const *plane;
     glint_tone_desc tone; ///< of the file
     const glint_tone_table *table; ///< colour passes
-    float gain; ///< likewise: the factor of light, see glint_tone_gain
+    float gain; ///< the factor of light, see glint_tone_gain; also only for beauty
     double nearest; ///< the smallest depth of the image
     double steepest; ///< the largest absolute slope of the image
-    double range[2]; ///< depth and slopes: values at the ends of the colours; equal: by `nearest` and `steepest`
-    const uint32_t *map; ///< of depth and slopes: colours 0xrrggbb from 0 to 1; NULL: greys
-    const void *(*under)(const void *user, int y, void *scratch); ///< with outlines: the rows below the lines
-    const void *(*plain)(const void *user, int y, void *scratch); ///< with overlays: the rows below them
+    double range[2]; ///< for depth and slopes: the values at both ends of the colour scale; if equal, `nearest` and
+        ///< `steepest` set the ends
+    const uint32_t *map; ///< for depth and slopes: colours 0xrrggbb for 0 .. 1; NULL: greys
+    const void *(*under)(const void *user, int y, void *scratch); ///< if there are outlines: returns the rows without
+        ///< them
+    const void *(*plain)(const void *user, int y, void *scratch); ///< if there are overlays: returns the rows without
+        ///< them
     glint_stamps stamps; ///< the overlays
 } picture;
 
@@ -257,7 +260,7 @@ static void find_nearest(picture *p)
 static void find_steepest(picture *p)
 {
     const size_t count = (size_t)p->image->width * (size_t)p->image->height;
-    p->steepest = DBL_MIN; // if nothing changes, all is grey
+    p->steepest = DBL_MIN; // so that a picture without any change is all grey
     for (int c = 0; c < 3; c++)
         for (size_t i = 0; i < count; i++)
             p->steepest = fabs(p->plane[c][i]) > p->steepest ? fabs(p->plane[c][i]) : p->steepest;
@@ -309,7 +312,7 @@ static glint_status lay_over(picture *p, glint_png_source *source, double dpi, u
 /// The rows of a pass as pixel values. Valid while the store of tone tables is open.
 typedef struct code_rows {
     picture picture;
-    glint_png_source source; ///< its user is the picture
+    glint_png_source source; ///< `source.user` points to `picture`
     uint64_t *stamps; ///< owned
 } code_rows;
 
@@ -355,7 +358,7 @@ static glint_status open_rows(const glint_image *image, const glint_write_desc *
     if (desc->pass == GLINT_PASS_BEAUTY && image->outline) {
         p->under = source->row;
         source->row = row_of_outlined;
-        source->stamp = NULL; // the stamps describe the codes without lines
+        source->stamp = NULL; // the stamps belong to the codes without lines
     }
     if (!status && desc->pass == GLINT_PASS_BEAUTY && image->overlays)
         status = lay_over(p, source, desc->dpi, &rows->stamps, error);

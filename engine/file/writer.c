@@ -13,9 +13,9 @@
 #include <string.h>
 #include <time.h>
 
-#define FILERS 4 ///< threads that write files, at most
-#define SPARES 4 ///< buffers cached for later files, at most
-#define SPARE_BYTES ((size_t)1 << 24) ///< larger buffers are not cached
+#define FILERS 4 ///< most threads that write files
+#define SPARES 4 ///< most buffers cached for later files
+#define SPARE_BYTES ((size_t)1 << 24) ///< buffers larger than this are not cached; bytes
 
 typedef enum job_state { JOB_QUEUED, JOB_ENCODING, JOB_ENCODED, JOB_FILING, JOB_DONE } job_state;
 
@@ -35,14 +35,16 @@ struct glint_writer {
     glint_bands *bands; ///< the encoder's
     pthread_mutex_t
         lock; ///< protects all fields below; a job in progress belongs to its thread, except `next` and `state`
-    pthread_cond_t to_encode, to_file; ///< there may be work for the encoder; for a filer
-    pthread_cond_t moved; ///< a job has left a queue, or is done
-    job *first, **end; ///< submitted and not yet collected
-    int waiting[JOB_DONE]; ///< number of jobs in each state: queued, encoded
-    int queue_depth; ///< limit for each of the two
-    glint_bytes spare[SPARES]; ///< cached buffers of written files: fresh memory costs more than filling it
+    pthread_cond_t to_encode, to_file; ///< signalled when there may be work for the encoder; for a thread that writes
+        ///< files
+    pthread_cond_t moved; ///< signalled when a job has left a queue, or is done
+    job *first, **end; ///< jobs that are submitted and not yet collected
+    int waiting[JOB_DONE]; ///< number of jobs that wait to be encoded, and to be written
+    int queue_depth; ///< largest number of jobs in each of the two queues
+    glint_bytes spare[SPARES]; ///< cached buffers of written files, because touching fresh memory takes longer than
+        ///< filling a cached buffer
     int spare_count;
-    bool closing; ///< no more jobs are submitted
+    bool closing; ///< no more jobs will be submitted
     bool encoded_all; ///< closing, and the encoder has no job left
 };
 
@@ -186,7 +188,7 @@ static void *run_filer(void *user)
 
 // ---- Making and ending --------------------------------------------------------------------------------------------
 
-/// Starts a thread with every signal blocked: signals are the main thread's.
+/// Starts a thread with all signals blocked, because the main thread handles them.
 static bool start_thread(glint_writer *writer, pthread_t *thread, void *(*run)(void *))
 {
     sigset_t all, old;
