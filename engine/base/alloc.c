@@ -54,7 +54,7 @@ void *glint_alloc_large(size_t count, size_t size)
     return memory;
 }
 
-/// Blocks of at least this many bytes are mapped, because the C library may not return
+/// Blocks of at least this many bytes are mapped, because the C library may not return heap memory to the system.
 #define PAGED_FROM ((size_t)256 << 10)
 
 void *glint_scratch_resize(void *memory, size_t from, size_t to)

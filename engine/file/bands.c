@@ -8,7 +8,8 @@
 
 #include <stdatomic.h>
 
-#define BAND_BYTES ((size_t)1 << 17) // least size of a band, filtered; fixed, so that no setting changes the file
+// least size of a band after filtering, bytes; fixed, so that no setting changes the file
+#define BAND_BYTES ((size_t)1 << 17)
 #define RETAINED_WORK_BYTES ((size_t)1 << 24) // a worker with a larger buffer frees it after use
 #define FILTER_SUB 1
 #define VECTOR 16
@@ -317,7 +318,8 @@ void glint_bands_destroy(glint_bands *bands)
 glint_status glint_bands_deflate(glint_bands *bands, const glint_png_source *source, glint_encode encode,
                                  const glint_bytes **stream, double *reused, glint_error *error)
 {
-    picture passing = { 0 }; // a picture without stamps is not cached, and does not replace the cached one
+    // a picture without stamps is stored here; it is not cached and does not replace the cached picture
+    picture passing = { 0 };
     picture *p = source->stamp ? &bands->last : &passing;
     const layout l = layout_of(source, encode);
     const bool done = lay_out(p, &l) && deflate_picture(bands, p, source, reused);

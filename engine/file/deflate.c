@@ -76,8 +76,9 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define MAP_THERE (MAP_PRIVATE | MAP_ANONYMOUS) // the address is only a hint; systems use it where nothing is mapped
 #endif
 #define BUCKET_BITS 13
-#define ADDRESS_SHIFT 16 // bits by which the number of a place is shifted to give its address
-#define FIRST_ADDRESS UINT32_C(0x20000000) // shifted; the 2^29 places from here on are unused by programs
+#define ADDRESS_SHIFT 16 // The address of a place is its number shifted by this many bits
+// number of the first place; programs do not use the 2^29 places from here on
+#define FIRST_ADDRESS UINT32_C(0x20000000)
 #define ADDRESS_BITS 29
 #define ADDRESSES_TRIED 64 // each thread of each writer needs one place for each of its buckets
 #define STREAMS 256 // number of streams cached for each thread

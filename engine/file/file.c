@@ -12,7 +12,8 @@
 #define PICTURE_LIMIT ((size_t)1 << (sizeof(size_t) > 4 ? 34 : 31))
 #define HEAD_BYTES ((size_t)65536) // enough to hold the size of the picture
 #define SLACK_BYTES ((size_t)64 << 20) // allowance for everything in a picture file except pixels
-#define STORED_TIMES 16 // a byte of pixels takes 13 if each has a chunk of its own
+// largest file size relative to the bytes of its pixels: a byte of pixels takes 13 if it has a chunk of its own
+#define STORED_TIMES 16
 
 /// Reads until there are `most` bytes, or the end of the file. Returns 0 or an errno.
 static int read_up_to(int file, size_t most, glint_bytes *out)

@@ -20,9 +20,9 @@
 typedef struct picture {
     const glint_image *image;
     float *const *plane;
-    glint_tone_desc tone; ///< of the file
-    const glint_tone_table *table; ///< colour passes
-    float gain; ///< the factor of light, see glint_tone_gain; also only for beauty
+    glint_tone_desc tone; ///< the tone of the file
+    const glint_tone_table *table; ///< the tone table, for colour passes
+    float gain; ///< for colour passes: the factor of light, see glint_tone_gain
     double nearest; ///< the smallest depth of the image
     double steepest; ///< the largest absolute slope of the image
     double range[2]; ///< for depth and slopes: the values at both ends of the colour scale; if equal, `nearest` and

@@ -67,7 +67,8 @@ static bool fits(double most, int hundredths)
 
 double glint_exposure_for(double most)
 {
-    int least = -GLINT_EXPOSURE_MAX * STEPS, above = GLINT_EXPOSURE_MAX * STEPS + 1; // `least` fits, `above` does not
+    // `least` steps of exposure fit, `above` steps do not
+    int least = -GLINT_EXPOSURE_MAX * STEPS, above = GLINT_EXPOSURE_MAX * STEPS + 1;
     if (!(most > 0))
         return 0;
     while (above - least > 1) {

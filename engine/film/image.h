@@ -14,10 +14,11 @@
 /// The stamp of one tile's pixels.
 typedef struct glint_film_stamp {
     glint_key key; ///< key of the pixels' inputs: equal keys mean equal pixels; all zero: unknown
-    uint64_t codes; ///< equal stamps in two images of one size and tone mean equal codes; 0: unknown
-    uint64_t base; ///< of a base of adaptive sampling: in two images of one size, equal stamps mean equal pixels; of a
-                   ///< picture made from a base: the base has equal pixels, and the same of them were refined; 0:
-                   ///< unknown, or neither
+    uint64_t codes; ///< stamp of the codes: equal stamps in two images of one size and tone mean equal codes; 0:
+        ///< unknown
+    uint64_t base; ///< stamp for adaptive sampling. If this image is a base: equal stamps in two images of one size
+                   ///< mean equal pixels. If it was made from a base: equal stamps mean that the bases have equal
+                   ///< pixels and that the same pixels were refined. 0: unknown, or neither
 } glint_film_stamp;
 
 struct glint_image {
@@ -26,23 +27,24 @@ struct glint_image {
     float *plane[GLINT_PLANE_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not stored.
         ///< Passes of one channel have only [0]
     void *codes; ///< channels * width * height codes, uint8_t or uint16_t (native order), interleaved; NULL: none
-    bool alpha; ///< beauty is light times coverage, and wherever there is beauty there is the pass `alpha`
-    glint_outline_color outline; ///< drawn over beauty in a PNG; then the image has the pass `outline`
+    bool alpha; ///< beauty is light times coverage; an image with beauty then also has the pass `alpha`
+    glint_outline_color outline; ///< colour of the outline, drawn over beauty in a PNG; then the image has the pass
+        ///< `outline`
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names; "": unused
     float *(*light)[3]; ///< planes of the light passes, `light_count` of them; NULL: none. Owned, with their names
     char (*light_name)[GLINT_NAME_SIZE];
     size_t light_count;
-    uint32_t *shadows; ///< for derivatives that move shadows, a number a pixel: in pixels with equal numbers
-        ///< the same lights are occluded in all samples, the others in none, and, if shapes or the eye move, the same
-        ///< surface is visible; 0: the samples differ. NULL: none. Owned
-    int channels; ///< of codes: 3: RGB; 4: RGBA
+    uint32_t *shadows; ///< for derivatives that move shadows, one number per pixel. In pixels with equal numbers, all
+        ///< samples have the same set of occluded lights and, if shapes or the eye move, see the same surface. 0: the
+        ///< samples of the pixel differ. NULL: not stored. Owned
+    int channels; ///< channels of codes: 3: RGB; 4: RGBA
     glint_tone_desc code_tone; ///< the tone that made the codes
-    double exposure; ///< of the frame's tone, with or without codes
-    glint_film_stamp *film; ///< one for each tile, left to right, top to bottom; may be NULL. Owned
-    uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
-        ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing
+    double exposure; ///< exposure of the frame's tone, with or without codes
+    glint_film_stamp *film; ///< one stamp for each tile, left to right, top to bottom; may be NULL. Owned
+    uint64_t *row_stamp; ///< one stamp for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal
+        ///< stamps in two images of one size and tone mean equal codes in these rows; 0: unknown
     glint_image *under; ///< the image without overlays, whose planes and codes this one shares; NULL: none. Owned
-    glint_overlays *overlays; ///< drawn over beauty in a PNG; NULL: none. Owned
+    glint_overlays *overlays; ///< overlays to draw over beauty in a PNG; NULL: none. Owned
     int part_x, part_y; ///< position of the first pixel in the whole picture, for the overlays
 };
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// If the light passes leave less than this share of a pixel, the rest is rounding: for passes in float, and in half.
+/// If the light passes leave less than this share of a pixel, the rest is rounding. One limit is for passes in float,
+/// the other for passes in half.
 #define ROUNDING 0x1p-20
 #define ROUNDING_OF_HALF 0x1p-8
 

@@ -109,8 +109,8 @@ static float first_by_search(const glint_tone_desc *desc, int k)
 }
 
 /// Returns the first float whose code is at least k, 1 <= k <= M: the float above the inverse if the inverse is far
-/// enough from any float to be certain, otherwise found by single steps. The inverse and the definition agree to 2^-48;
-/// for a curve only to 2^-34, since 1 - y of the last codes has 16 bits less.
+/// enough from any float to be certain, otherwise found by single steps. The inverse and the definition agree to
+/// 2^-48, but with a tone curve only to 2^-34, since 1 - y of the last codes has 16 bits less.
 static float first_of_code(const glint_tone_desc *desc, int k)
 {
     double code = desc->rounding == GLINT_ROUND_NEAREST ? k - 0.5 : k;
@@ -193,7 +193,8 @@ static uint32_t code_by_search(const float *threshold, float x)
     return low;
 }
 
-/// Returns the position of x between the codes around it. A line through two such positions is a good guess in between.
+/// Returns the fractional code at x, between the two codes around it. A line through two such points is a good guess
+/// in between.
 static float fractional_code(const float *threshold, float x)
 {
     uint32_t code = code_by_search(threshold, x);
@@ -329,8 +330,8 @@ static inline uint16_t code16(const glint_tone_table *table, float exposed)
     return (uint16_t)code;
 }
 
-/// Returns whether a channel of light, before exposure, is not finite; and whether one, after it, is brighter than
-/// white.
+/// Returns whether a channel of the light before exposure is not finite, and whether a channel of the light after
+/// exposure is brighter than white.
 static inline bool is_odd(float r, float g, float b) { return !isfinite(r) || !isfinite(g) || !isfinite(b); }
 static inline bool is_clipped(const glint_tone_table *table, const float x[3])
 {

@@ -5,14 +5,14 @@
 #include "engine/glint.h"
 #include "engine/stages/stages.h"
 
-#define GLINT_TONE16_FIRST 0x3500u ///< upper 16 bits of 2^-21; the floats below have code 0 at 16 bits
+#define GLINT_TONE16_FIRST 0x3500u ///< upper 16 bits of the float 2^-21; smaller floats have code 0 at 16 bits
 
 /// The codes of one curve, for light after exposure.
 typedef struct glint_tone_table {
     glint_tone_desc desc; ///< with exposure 0
     float white, top; ///< as in glint_tone_args
     uint32_t *lut; ///< 8 bits: the table of the tone stage, see stages.h
-    bool has_fit; ///< 8 bits: only for the curve `clamp`
+    bool has_fit; ///< 8 bits: whether the fit of the tone stage exists, which only the curve `clamp` has
     glint_tone_fit fit; ///< likewise
     float *threshold; ///< 16 bits: [k] is the first float of code k, k = 0 .. 65535, then +inf
     float (*guess)[2]; ///< 16 bits, for each bucket of 2^15 floats: the code at its first float, and codes per step
@@ -26,7 +26,8 @@ bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b);
 /// Returns the factor of light: 2^exposure, rounded to float.
 float glint_tone_gain(const glint_tone_desc *desc);
 
-/// Return the value of the curve, 0 .. 1, and the light at which it reaches y (+inf: nowhere). tone_curve.c.
+/// Return the value of the curve, 0 .. 1, and the light at which the curve reaches y (+inf: it never does).
+/// tone_curve.c.
 double glint_tone_curve_value(glint_tone_curve curve, double linear);
 double glint_tone_curve_inverse(glint_tone_curve curve, double y);
 double glint_tone_curve_white(glint_tone_curve curve); ///< light from which the curve is 1

@@ -3,8 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#define FEWEST 256 ///< primitives; with fewer, traversing the BVH is as fast
-#define SAMPLES_A_PRIMITIVE 0.5 ///< samples of a frame per primitive; with fewer, a grid is never made
+#define FEWEST 256 ///< smallest number of primitives: with fewer, traversing the BVH is as fast
+/// smallest number of a frame's samples per primitive: with fewer, a grid is never made
+#define SAMPLES_A_PRIMITIVE 0.5
 #define SAMPLES_AT_ONCE 4.0 ///< samples per primitive and thread from which a grid pays in one frame; with fewer it
     ///< is made in the second frame with unchanged light and geometry
 

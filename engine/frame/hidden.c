@@ -7,13 +7,13 @@
 
 #include <stdlib.h>
 
-#define STEPS 4.0 ///< casts for each pixel of a curve
+#define STEPS 4.0 ///< number of casts for each pixel of a curve
 #define MARGIN 1e-6 ///< a surface hides a point that is farther away than the surface by this fraction
 
 typedef struct rays {
     _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], t[GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP];
-    double scale[GLINT_GROUP]; ///< of the direction; the point on the curve is at t = 1 / scale
+    double scale[GLINT_GROUP]; ///< factor of the ray's direction; the point on the curve is at t = 1 / scale
     uint16_t active, hits;
 } rays;
 
@@ -35,7 +35,8 @@ static void aim(const glint_overlays_camera *camera, const double point[3], rays
     }
 }
 
-/// Adds to the hidden parts the next of the steps of a curve, which ends at `to`. Returns false if out of memory.
+/// Checks the next step of a curve, which ends at `to`, and adds it to the hidden parts if a surface hides it.
+/// Returns false if out of memory.
 static bool add_step(glint_hidden_parts *parts, double from, double to)
 {
     if (parts->count && parts->of[parts->count - 1][1] >= from) {

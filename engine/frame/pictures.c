@@ -3,7 +3,7 @@
 /// the least recently returned: a large cheap picture goes before a small expensive one.
 #include "engine/frame/renderer.h"
 
-/// Returns the key of the whole picture, or of its region.
+/// Returns the key of the whole picture or, if only a region is rendered, of that region.
 static glint_key picture_key(const glint_plan *plan)
 {
     const glint_stage_id last = plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE;
@@ -57,7 +57,7 @@ static double cost_of(const glint_plan *plan, const glint_image *image)
            (double)glint_image_bytes(image);
 }
 
-/// Reserves memory for a picture, and drops pictures that are worth less. NULL: there is not enough memory.
+/// Reserves memory for a picture, and drops pictures of lower worth to make space. NULL: there is not enough memory.
 static glint_picture *make_slot(glint_renderer *renderer, double worth, size_t bytes)
 {
     for (;;) {

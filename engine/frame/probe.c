@@ -45,8 +45,8 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
-/// Returns the number of a part of a combined solid, from 0. whole, id: ids of the solid, and of the part, or of a
-/// triangle if the part is a mesh.
+/// Returns the number of a part of a combined solid, from 0. whole: id of the solid. id: id of the part or, if the
+/// part is a mesh, of one of its triangles.
 static size_t part_number(const glint_geometry *geometry, uint32_t whole, uint32_t id)
 {
     // triangles come after

@@ -306,7 +306,7 @@ static glint_image *take_last(glint_renderer *renderer, const glint_plan *plan)
     glint_picture *last = &renderer->pictures[0];
     for (int i = 0; i < GLINT_SPARE_IMAGES && last->image && !plan->base; i++)
         if (renderer->spare[i] == last->image && has_format(last->image, &plan->desc) && atomic_load(&last->image->references) == 2) {
-            last->key = (glint_key) { 0 }; // it is about to change
+            last->key = (glint_key) { 0 }; // the picture is about to change
             return glint_image_retain(last->image);
         }
     return NULL;

@@ -9,7 +9,7 @@
 glint_pool *glint_renderer_pool(const glint_renderer *renderer);
 
 /// Renders one instant into an image of the whole frame's size, within the plan's extent. The image may be the
-/// renderer's last one; the caller must not write to it.
+/// renderer's last image, so the caller must not write to it.
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                   glint_frame_stats *stats, glint_error *error);
 
@@ -17,8 +17,8 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
 glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                 glint_frame_stats *stats, glint_error *error);
 
-/// Returns the plan's overlays, of which it has some, with the parts of their curves that surfaces hide. The caller owns
-/// a reference, even on failure unless *out is NULL.
+/// Returns the plan's overlays, with the parts of their curves that surfaces hide. The plan must have overlays. The
+/// caller owns a reference, even on failure unless *out is NULL.
 glint_status glint_hidden_find(const glint_stages *stages, const glint_plan *plan, glint_overlays **out, glint_error *error);
 
 /// Adds the times, rays and work of another part of the frame. The stages are the stages of `to`; `share` of their

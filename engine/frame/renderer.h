@@ -22,11 +22,12 @@
 
 /// A picture that is returned again when a frame has the same inputs.
 typedef struct glint_picture {
-    glint_image *image; ///< a reference; NULL: none
+    glint_image *image; ///< a reference, owned; NULL: none
     glint_key key;
     glint_frame_stats stats;
-    double cost; ///< the rays per byte that the plan expects
-    double worth; ///< the least is dropped first: `cost` plus the floor at the time the picture was last returned
+    double cost; ///< the number of rays per byte that the plan expects
+    double worth; ///< `cost` plus the value of `picture_floor` when the picture was last returned; the picture of
+        ///< least worth is dropped first
 } glint_picture;
 
 struct glint_renderer {
@@ -34,16 +35,16 @@ struct glint_renderer {
     const glint_stages *stages;
     bool time_stages, count_work;
     atomic_bool cancelled;
-    atomic_bool *stop; ///< its own `cancelled`; for a renderer of bases, the flag of the frame's renderer
+    atomic_bool *stop; ///< the renderer's own `cancelled`; for a renderer of bases, the flag of the frame's renderer
     atomic_size_t tiles_done;
     atomic_size_t tile_count;
     glint_tile **tiles; ///< working memory for a tile, one for each worker
     glint_reuse reuse;
     glint_shading_points_cached shading_points;
     glint_raster raster;
-    glint_tints tints; ///< for frames where transparent materials tint shadows
+    glint_tints tints; ///< colours of shadows, for frames where transparent materials tint shadows
     glint_grids own_grids, *grids; ///< a renderer of bases uses the grids of the frame's renderer
-    glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's; stored ones
+    glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's picture; stored pictures
     double picture_floor; ///< worth of the last dropped picture; it rises, so that unused pictures age
     glint_recent recent; ///< keys of the last pictures
     /// Earlier pictures, whose memory is reused when there is no other reference.
@@ -54,7 +55,7 @@ struct glint_renderer {
     /// Renders the bases of adaptive sampling, with the pool and the tiles of this renderer; NULL until a frame
     /// needs it, and again after a frame that does not.
     struct glint_renderer *base;
-    bool shares; ///< this renderer renders bases: pool and tiles belong to another one
+    bool shares; ///< true for a renderer of bases: its pool and tiles belong to another renderer
 };
 
 /// Renders a plan of one instant into `image`, which has its format and size. The caller owns all arguments.
@@ -68,13 +69,14 @@ glint_status glint_renderer_run(glint_renderer *renderer, const glint_plan *plan
 glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
                                        glint_error *error);
 
-/// adaptive.c: glint_renderer_run for a plan with a base: the base, then all samples of the pixels that need them.
+/// adaptive.c: does the same as glint_renderer_run for a plan with a base: renders the base, then all samples of the
+/// pixels that need them.
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error);
 
 /// pictures.c: returns an earlier picture if this frame's would be the same. Returns false if there is none.
 bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats);
-/// Stores the picture as the last one, if it is among the spare images.
+/// Stores the picture as the last one, if its image is one of the spare images.
 void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats);
 void glint_pictures_clear(glint_renderer *renderer);
 
