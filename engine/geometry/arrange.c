@@ -17,11 +17,11 @@ typedef struct arrangement {
     const glint_geometry *geometry;
     glint_prim *prims;
     uint32_t count;
-    uint32_t *rest; ///< old positions of the primitives after the BVH's last one
+    uint32_t *rest; ///< old positions of the primitives that come after the last one in the BVH
     uint8_t *done; ///< for each position
-    glint_prim *first; ///< the primitives that were at the positions where walks begin
+    glint_prim *first; ///< copies of the primitives that were at the positions where walks begin
     double (*corners)[3][3]; ///< memory for all corners in their new order; NULL: there are none
-    uint32_t *chunks; ///< scratch: one number for each chunk of primitives or of members
+    uint32_t *chunks; ///< scratch: one number for each chunk of primitives or of parts of combined solids
 } arrangement;
 
 static inline uint32_t source_of(const arrangement *a, uint32_t position)
@@ -123,7 +123,7 @@ static void move_prims(arrangement *a, glint_pool *pool)
 typedef struct corner_work {
     glint_prim *prims;
     uint32_t count;
-    uint32_t *first; ///< first corner of each chunk; before that is known, its number of corners
+    uint32_t *first; ///< first corner of each chunk; before that is known, the number of its corners
     double (*to)[3][3];
 } corner_work;
 
@@ -159,7 +159,7 @@ static void move_chunk(void *context, size_t index, int worker)
     }
 }
 
-/// Moves the corners of primitives and returns how many there are. first: space for one number per chunk.
+/// Moves the corners of the primitives and returns the number of corners. first: space for one number per chunk.
 static uint32_t move_corners_of(glint_prim *prims, uint32_t count, double (*to)[3][3], uint32_t *first, glint_pool *pool)
 {
     corner_work work = { prims, count, first, to };

@@ -45,8 +45,8 @@ static inline placed_box place_sphere(const glint_geometry_table *table, const g
 
 /// Returns the margin of a box in the BVH's units. It covers rounding, the difference between a solid and its
 /// inverse, and the distance by which a point may be off a triangle and still count as on it. This distance is at
-/// most 13 slacks of the scene's coordinates: twice the error that `surface` states for the point, for two edges and
-/// for a coordinate, plus one for the corners relative to the point.
+/// most 13 times the slack of the scene's coordinates: twice the error bounds that the stage `surface` gives for the
+/// point, for two edges and for a coordinate, plus one slack for the corners relative to the point.
 static double box_slack(const glint_geometry_table *table, const glint_prim *prim, double center, double half)
 {
     const double rounding = 0x1p-50 * (fabs(center) + half);
@@ -83,7 +83,7 @@ static inline void write_box(const placed_box *placed, uint32_t item, glint_box 
     box->unused = 0;
 }
 
-/// Returns the radius of a sphere around an ellipsoid or torus, in the world. The map M stretches no vector by more
+/// Returns the radius of a sphere around an ellipsoid or torus, in world units. The map M stretches no vector by more
 /// than the square root of the largest row sum of |M^T M|, which is exact if the map preserves angles.
 static double reach_of(const glint_solid *solid)
 {
@@ -110,8 +110,8 @@ void glint_prim_place_sphere(const glint_geometry_table *table, glint_prim *prim
     prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(box.center, box.center)) + FLT_MIN);
 }
 
-/// The map turns a unit circle into an ellipse. Half of its length is the square root of the larger eigenvalue of the
-/// products of its columns.
+/// The map turns a unit circle into an ellipse. Half of the ellipse's length is the square root of the larger
+/// eigenvalue of the matrix of the dot products of the map's columns.
 void glint_prim_place_axis(const glint_geometry_table *table, const glint_prim *prim, glint_solid *solid)
 {
     const bool about_axis = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE ||
@@ -139,7 +139,7 @@ void glint_prim_place_box(const glint_geometry_table *table, const glint_prim *p
 typedef struct box_work {
     const glint_geometry *geometry;
     glint_box *boxes;
-    uint32_t *first; ///< first box of each chunk; before that is known, its number of boxes
+    uint32_t *first; ///< first box of each chunk; before that is known, the number of its boxes
     bool solids;
 } box_work;
 

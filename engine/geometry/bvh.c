@@ -17,15 +17,15 @@
 typedef struct node_list {
     glint_node *nodes; ///< owned, unless `lent`
     uint32_t count, capacity;
-    bool lent; ///< `nodes` belongs to the builder's `node_block`
+    bool lent; ///< whether `nodes` is part of the builder's `node_block`
 } node_list;
 
 /// A subtree that one worker builds. Its first node is in the top; the others follow all earlier nodes.
 typedef struct task {
     glint_record_set set;
-    int depth; ///< most nodes on a path in it
-    uint32_t at; ///< index of its first node in the top
-    uint32_t base; ///< index of its second node in the finished tree
+    int depth; ///< most nodes on a path in the subtree
+    uint32_t at; ///< index of the subtree's first node in the top
+    uint32_t base; ///< index of the subtree's second node in the finished tree
     node_list list;
     bool failed;
 } task;
@@ -35,13 +35,13 @@ typedef struct builder {
     node_list top;
     task *tasks; ///< owned
     size_t task_count, task_capacity;
-    uint32_t task_max; ///< boxes in a task; larger sets are split by all workers together
-    glint_node *node_block; ///< owned; the tasks' lists begin here, and few outgrow it
+    uint32_t task_max; ///< most boxes in a task; all workers together split larger sets
+    glint_node *node_block; ///< owned block of nodes; the tasks' lists begin in it, and few lists outgrow it
     size_t block_bytes;
     glint_node *nodes; ///< the finished tree
 } builder;
 
-/// The contents of a node's slots: sets with one or more nodes each, and sets whose records get a slot each.
+/// The contents of a node's slots. A set becomes a child node, or each of its records gets a slot of its own.
 typedef struct node_plan {
     glint_record_set sets[GLINT_NODE_WIDTH];
     double area[GLINT_NODE_WIDTH];
@@ -80,7 +80,7 @@ static uint32_t nodes_add(node_list *list, uint32_t count)
     return list->count - count;
 }
 
-/// Returns half the area, in double, which no product of floats overflows.
+/// Returns half the area of a box, in double, where products of floats do not overflow.
 static double half_area(const glint_bounds *box)
 {
     double size[3];
@@ -89,7 +89,7 @@ static double half_area(const glint_bounds *box)
     return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
 }
 
-/// Returns the number of nodes on the longest path if `count` boxes are split by number.
+/// Returns the number of nodes on the longest path if `count` boxes are split into halves by number.
 static int least_depth(uint32_t count)
 {
     int depth = 1;
@@ -98,7 +98,8 @@ static int least_depth(uint32_t count)
     return depth;
 }
 
-/// Returns the set to split next: the largest by area, or by number; plan->count if each set fits into one node.
+/// Returns the set to split next: the one with the largest area or, if split by number, with the most boxes;
+/// plan->count if each set fits into one node.
 static uint32_t pick_set(const node_plan *plan, bool by_number)
 {
     uint32_t best = plan->count;
@@ -181,7 +182,7 @@ static uint32_t plan_slots(const builder *b, const node_plan *plan, node_slots *
     return sets;
 }
 
-/// Ranks the slots by their centres along an axis; equal ones keep their order.
+/// Ranks the slots by their centres along an axis; slots with equal centres keep their order.
 static void rank_slots(const node_slots *slots, int axis, uint32_t ranks[GLINT_NODE_WIDTH])
 {
     typedef int32_t int4 __attribute__((vector_size(16)));
@@ -324,7 +325,8 @@ static bool build_lists(builder *b, const glint_record_set *root)
     return true;
 }
 
-/// Joins the top and the rest of each task in order. The records are not needed any more and are freed first.
+/// Joins the top and the remaining nodes of each task in order. Frees the records first, because they are not needed
+/// any more.
 static bool join(builder *b, glint_bvh *out)
 {
     uint32_t count = b->top.count;

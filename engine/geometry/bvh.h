@@ -25,9 +25,10 @@ glint_box *glint_boxes_alloc(uint32_t count);
 void glint_boxes_free(glint_box *boxes, uint32_t count);
 
 /// Builds the tree over boxes[0 .. count); leaf slots hold the box's item. Binned SAH, collapsed to 16 wide. The tree
-/// depends only on the boxes and their order, not on the threads. No path is longer than GLINT_BVH_DEPTH nodes for
-/// any boxes: a million boxes at one position are halved by number. A node fills its slots from the first on, in the
-/// order of their centres along its widest axis; an empty slot has child 0.
+/// depends only on the boxes and their order, not on the threads. No path is longer than GLINT_BVH_DEPTH nodes,
+/// whatever the boxes: for example, a million boxes at one position are split into halves by number. A node fills its
+/// slots from the first on, in the order of the children's centres along the node's widest axis. An empty slot has
+/// child 0.
 ///
 /// boxes  from glint_boxes_alloc(count), finite, also degenerate; count below 2^31. They are sorted in place and
 ///        always freed here, before the parts are copied to the finished tree.

@@ -12,7 +12,8 @@
 #define BINS 16
 #define CHUNK 16384 ///< records that one worker takes at a time
 #define CHUNKS_MAX 64
-/// Splits by position allowed on a path, then by number: splits that remove only a few of a million records must end.
+/// Number of splits by position allowed on a path; further splits are by number. Otherwise splits that each remove
+/// only a few of a million records would make the tree too deep.
 #define SPLITS_MAX 64
 
 typedef glint_float4 v4;
@@ -31,20 +32,20 @@ typedef struct grid {
 
 typedef struct cut {
     int axis; ///< -1: none
-    int bin; ///< first bin of the upper part
+    int bin; ///< index of the first bin of the upper part
 } cut;
 
 /// The share of one worker in a split, or in loading the boxes.
 typedef struct glint_chunk {
     bins bins;
-    bounds box; ///< loading: of the boxes
+    bounds box; ///< when loading: bounds of the chunk's boxes
     bounds center; ///< loading: of all
     uint32_t begin, count; ///< in the set
 } chunk;
 
 /// The share of one worker in moving records of a part together.
 typedef struct piece {
-    bounds center[2]; ///< of the records that go to the lower and to the upper part
+    bounds center[2]; ///< bounds of the centres of the records that go to the lower part and to the upper part
     uint32_t begin, count; ///< in the set
     /// Number of records in the wrong part, in this piece and in the part's pieces before it
     uint32_t wrong, wrong_before;
@@ -54,9 +55,9 @@ typedef struct split_work {
     glint_record *records; ///< of the set
     uint32_t *wrong; ///< the same for their numbers in the set
     chunk *chunks;
-    piece pieces[2][CHUNKS_MAX]; ///< of the lower and of the upper part
+    piece pieces[2][CHUNKS_MAX]; ///< pieces of the lower part and of the upper part
     size_t count; ///< number of chunks, and of pieces of each part
-    glint_pool *pool; ///< NULL: one thread does all
+    glint_pool *pool; ///< workers that share the split; NULL: one thread does everything
     grid grid;
     cut cut;
 } split_work;
@@ -98,7 +99,7 @@ static inline void bounds_add_point(bounds *sum, v4 point)
     sum->upper = max4(point, sum->upper);
 }
 
-/// Returns only the box: the fourth lane of a record is an index, not a number.
+/// Returns only the box of a record, because the fourth lane of a record is an index, not a coordinate.
 static inline bounds record_box(const glint_record *record)
 {
     return (bounds) { (v4)((v4i)record->lower & (v4i) { -1, -1, -1, 0 }), record->upper };
@@ -116,7 +117,7 @@ static grid grid_of(const glint_record_set *set)
     return g;
 }
 
-/// Returns bins of which only the first three lanes are defined.
+/// Returns the bins of a centre. Only the first three lanes are defined.
 static inline v4i bins_of(grid g, v4 center)
 {
     const v4 last = { BINS - 1, BINS - 1, BINS - 1, 0 };
@@ -149,8 +150,8 @@ static void bin_chunk(void *context, size_t index, int worker)
     }
 }
 
-/// Returns half the area of a box, in units of the set, plus a small part of its sides, which distinguishes boxes
-/// without area.
+/// Returns half the area of a box, in units of the set, plus a small fraction of its sides, so that boxes without
+/// area can be compared, too.
 static inline float half_area(bounds box, float scale)
 {
     const v4 size = max4(box.upper * scale - box.lower * scale, (v4) { 0 });
@@ -158,7 +159,7 @@ static inline float half_area(bounds box, float scale)
     return sides[0] + sides[1] + sides[2];
 }
 
-/// Returns 1 / the longest side of a box, so that areas neither overflow nor all underflow.
+/// Returns 1 / the longest side of a box, so that no area overflows and not all areas underflow.
 static float area_scale(const bounds *box)
 {
     float longest = 0;
@@ -167,7 +168,7 @@ static float area_scale(const bounds *box)
     return fminf(0.5f / longest, 0x1p120f);
 }
 
-/// Returns the number of nodes that the records fill; the cost of a set is its area times this number.
+/// Returns the number of nodes that the records fill; the cost of a set is this number times the set's area.
 static inline float node_count(uint32_t records)
 {
     return (float)((records + GLINT_NODE_WIDTH - 1) / GLINT_NODE_WIDTH);
@@ -207,7 +208,7 @@ static cut find_cut(const bins *b, const glint_record_set *set)
     return best;
 }
 
-/// Finds the records of a piece that are in the wrong part.
+/// Finds the records of a piece that belong to the other part.
 static void find_wrong(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -275,7 +276,7 @@ static uint32_t count_below(const bins *b, cut where)
     return count;
 }
 
-/// Fills in both sets except for their centres, which moving the records computes.
+/// Fills in both sets except for the bounds of their centres, which are computed when the records are moved.
 static void part(const bins *b, cut where, glint_record_set *set, glint_record_set *above)
 {
     *above = *set;
@@ -304,7 +305,7 @@ static size_t cut_chunks(chunk *chunks, size_t count, uint32_t total)
     return count;
 }
 
-/// Cuts a part of the set into the work's number of pieces.
+/// Divides a part of the set among the pieces, as many as the work has.
 static void cut_pieces(split_work *work, int part, uint32_t begin, uint32_t total)
 {
     for (size_t i = 0; i < work->count; i++) {
@@ -314,7 +315,7 @@ static void cut_pieces(split_work *work, int part, uint32_t begin, uint32_t tota
     }
 }
 
-/// Moves the records of each part together.
+/// Moves the records of each part to consecutive positions.
 static void move_records(split_work *work, glint_record_set *set, glint_record_set *above)
 {
     cut_pieces(work, 0, 0, set->count);

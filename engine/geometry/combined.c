@@ -87,7 +87,8 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
     }
 }
 
-/// The parts that a set operation needs, and the parts that can be its result on their own.
+/// Roles of parts in a set operation, one bit each. needs: the parts that contain every point of the result. alone:
+/// the parts that can contain a point of the result that no other part contains.
 typedef struct roles {
     uint64_t needs, alone;
 } roles;

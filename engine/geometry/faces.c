@@ -34,7 +34,7 @@ void glint_face_init(glint_face *face, const glint_placing *placing, const doubl
     face->magnitude = 0;
 }
 
-/// Returns the magnitude of the terms that map a point from the shape's own space to the world.
+/// Returns the magnitude of the terms of the sum that maps a point from the shape's own space to the world.
 static double moved_by(const glint_placing *placing, int axis, const double own[3])
 {
     const double *row = placing->map ? placing->map->m[axis] : NULL;

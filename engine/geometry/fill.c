@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Maps the normal of a corner for smooth shading. If the map does not preserve angles, normals keep their mapped
-/// lengths, in common units: interpolated normals are then the map of normals interpolated in the mesh's own space.
+/// Maps the normal of a corner for smooth shading. If the map does not preserve angles, all normals of the mesh keep
+/// the lengths that the map gives them, with a common factor: interpolated normals are then the map of normals
+/// interpolated in the mesh's own space.
 static void place_corner_normal(const glint_placing *placing, const double n[3], double out[3])
 {
     double largest = 0;
@@ -67,7 +68,8 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
         geometry->shading_point_prims[shading_point] = prim->id;
 }
 
-/// Makes a triangle perpendicular to an axis share its plane with others, starting with its own mesh.
+/// Makes a triangle that is perpendicular to an axis share its face with other triangles in the same plane, first
+/// those of its own mesh.
 static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i,
                        const glint_placing *placing)
 {
@@ -220,7 +222,7 @@ glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape,
     return GLINT_OK;
 }
 
-/// Adds a shape. around: the map of the groups that contain it; NULL: the identity.
+/// Adds a shape. around: the map of the groups that contain the shape; NULL: the identity.
 static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_transform *around)
 {
     glint_transform map;
@@ -239,8 +241,8 @@ static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_t
 
 #define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each counted once per instance
 
-/// Counts the primitives of a shape. mapped: it is in a group that has a transform; within: it is in a combined
-/// solid.
+/// Counts the primitives of a shape. mapped: the shape is in a group that has a transform. within: the shape is in a
+/// combined solid.
 static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool mapped, bool within)
 {
     const bool group = glint_shape_has_children(shape) && (within || !glint_shape_combines(shape));

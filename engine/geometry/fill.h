@@ -11,17 +11,17 @@ typedef struct glint_filler {
     size_t members, combined; ///< number of parts of combined solids, and of combined solids
     size_t hulls, hull_prims; ///< number of parts that are meshes, and of their triangles
     size_t prims, parts, smooth, shared, shading_points, solids, faces,
-        materials; ///< numbers of each; materials: most of any shape
-    size_t maps; ///< maps of parts, at most
-    size_t corners, planes; ///< corners of triangles and boxes; rows of planes
+        materials; ///< number of solids, faces and so on; materials: the largest number that one shape has
+    size_t maps; ///< upper bound for the number of parts that have a map
+    size_t corners, planes; ///< number of corners of triangles and boxes; number of rows of planes
     size_t visits, map_count;
     uint32_t corner_count, plane_count, normal_count, shared_count, solid_count, face_count, combined_count, hull_count, member_count, hull_prim_count;
-    int level_axis; ///< axis perpendicular to the shape's last triangle with such an axis; 3: none so far
-    double level; ///< the triangle's coordinate on it
+    int level_axis; ///< axis that the shape's last axis-aligned triangle is perpendicular to; 3: there was none yet
+    double level; ///< coordinate of that triangle on this axis
     glint_error *error;
 } glint_filler;
 
-/// Writes the index of the shape's material in `materials`, and appends new ones.
+/// Writes the indices of the shape's materials, and appends new materials to `materials`.
 glint_status glint_fill_material(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error);
 /// Fills in a part. placing: the shape's placement under all groups around it.
 void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *placing);
@@ -33,10 +33,10 @@ void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc 
 void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i,
                          const glint_placing *placing, bool reversed);
 /// Computes a shape's placement. around: the map of the groups that contain it; NULL: the identity. map: memory for
-/// the product.
+/// the product of the maps.
 glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape, const glint_transform *around, glint_transform *map,
                                 glint_placing *placing);
-/// fill_combined.c: adds a combined solid and its parts. around: as above.
+/// fill_combined.c: adds a combined solid and its parts. around: as for glint_fill_placing.
 glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glint_placing *placing,
                                  const glint_transform *around);
 

@@ -8,11 +8,11 @@
 typedef struct maker {
     glint_shape *shape; ///< the whole
     glint_combined *combined;
-    uint32_t nothings; ///< groups that are empty
-    uint32_t medium; ///< index of its material
+    uint32_t nothings; ///< number of empty groups among the parts
+    uint32_t medium; ///< index of the combined solid's material
 } maker;
 
-/// Returns the shape whose material applies to parts without one: the whole, or one of its parts.
+/// Returns the shape whose material is used for parts without a material: the whole solid, or one of its parts.
 static const glint_shape *find_dress(const glint_shape *shape)
 {
     if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
@@ -32,7 +32,7 @@ static glint_status too_many_parts(const glint_filler *f, const maker *m)
     return glint_fail(f->error, GLINT_ERR_INVALID, "%s: at most %d parts expected", name, GLINT_PARTS_MAX);
 }
 
-/// Adds a part without its position. order: see glint_prim.face.
+/// Adds a part and leaves its position unset. order: see glint_prim.face.
 static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *placing,
                                  const glint_shape *dress, bool inverted, uint32_t order, glint_prim **out)
 {
@@ -55,7 +55,7 @@ static glint_status start_member(glint_filler *f, maker *m, glint_shape *shape, 
     return GLINT_OK;
 }
 
-/// Adds a part that is a solid, ball or plane; half: 0, or 1 and 2 for a torus.
+/// Adds a part that is a solid, ball or plane; half: 1 and 2 for the two halves of a torus, otherwise 0.
 static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *placing,
                                const glint_shape *dress, bool inverted, uint32_t half)
 {
@@ -100,7 +100,7 @@ static void add_hull_triangles(glint_filler *f, const maker *m, glint_shape *sha
     f->hull_prim_count += hull->count;
 }
 
-/// Adds a closed mesh: several parts for one mesh, and its triangles.
+/// Adds a closed mesh as GLINT_HULL_PARTS parts, and its triangles.
 static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, const glint_placing *placing,
                              const glint_shape *dress, bool inverted)
 {
@@ -135,7 +135,7 @@ static uint8_t operation_of(const glint_shape *shape)
                                                         : GLINT_COMBINE_UNION;
 }
 
-/// Adds a shape to a combined solid. dress: the material for shapes without one.
+/// Adds a shape to a combined solid. dress: the shape whose material is used for shapes without a material.
 static glint_status add_to_whole(glint_filler *f, maker *m, glint_shape *shape, const glint_transform *around,
                                  const glint_shape *dress, bool inverted)
 {

@@ -11,10 +11,10 @@
 
 #define LOOKUPS 32u ///< primitives that are looked up together
 
-/// A primitive in a hash table of positions.
+/// A slot of the hash table that finds primitives by position.
 typedef struct record_slot {
-    uint32_t number; ///< index + 1; 0: free
-    uint32_t tag; ///< bits of the hash that the slot's index does not contain
+    uint32_t number; ///< index of the primitive + 1; 0: the slot is free
+    uint32_t tag; ///< bits of the hash that are not part of the slot's index
 } record_slot;
 
 static bool is_repeat(const glint_geometry *geometry, uint32_t i, uint32_t other)
@@ -33,7 +33,7 @@ static void mark_repeats(glint_geometry *geometry, uint32_t first, uint32_t coun
         double record[GLINT_PRIM_RECORD_MAX];
         const glint_prim *prim = &geometry->prims[first + n];
         if (prim->kind == GLINT_PRIM_TRIANGLE)
-            continue; // a separate rule handles all triangles of a plane
+            continue; // triangles of one plane have their own rule
         keys[n] = glint_key_add((glint_key) { 0 }, record,
                                 (size_t)glint_prim_record(geometry, prim, record) * sizeof *record);
         __builtin_prefetch(&slots[keys[n].low & mask]);
@@ -84,7 +84,8 @@ static void make_keys(glint_geometry *geometry)
             const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
             const bool shading_points = triangle && prim->shading_points != GLINT_MISS;
             const uint32_t *part =
-                geometry->prim_part + prim->id; // positions do not show where one mesh ends and the next one begins
+                // the positions alone do not show where one mesh ends and the next begins
+                geometry->prim_part + prim->id;
             const bool other = triangle && i + n > 0 && prim[-1].kind == GLINT_PRIM_TRIANGLE && part[-1] != part[0];
             look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (shading_points ? 4u : 0) | (other ? 8u : 0);
             look[n][1] = prim->material;
@@ -114,8 +115,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/// Chooses the BVH's frame: its origin is the median of the primitives, which a single giant does not move, and its
-/// unit is about the largest length. Floats lose the least precision there.
+/// Chooses the BVH's frame: its origin is the median of the primitives' positions, which a single giant primitive
+/// does not move, and its unit is about the largest length. Floats lose the least precision in this frame.
 static void choose_frame(glint_geometry *geometry)
 {
     enum { SAMPLES = 255 };
@@ -152,7 +153,7 @@ static void choose_frame(glint_geometry *geometry)
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
-/// Marks primitives whose bounding sphere is much larger than themselves, for segments to a light.
+/// Stores the box of a solid or combined solid and, for a solid, the filter's data about its axis.
 static void store_box(const glint_geometry *geometry, const glint_prim *prim)
 {
     glint_box box;
@@ -183,7 +184,7 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
         if (prim->filter_bound == GLINT_REPEATED)
-            continue; // the first of equal primitives wins every tie and casts every shadow
+            continue; // the first of several equal primitives wins every tie and casts every shadow
         prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
             glint_prim_place_sphere(&geometry->table, prim);
@@ -211,7 +212,8 @@ static void index_release(glint_index *index)
     free(index);
 }
 
-/// Returns the next position in the order; triangles come first. next: the next position of triangles, and of others.
+/// Returns the next position in the order; triangles come first. next: the next free position for triangles, and for
+/// other primitives.
 static inline uint32_t take_position(const glint_geometry *geometry, uint32_t i, uint32_t next[2])
 {
     const glint_geometry_table *table = &geometry->table;
@@ -388,12 +390,12 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id)
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
-    // a part of a combined solid has one id
+    // a part of a combined solid has only one id, so the difference is 0
     return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim);
 }
 
-/// Returns a key of the states of all shapes: every change of a shape gives it a number that no other state of any
-/// shape has.
+/// Returns a key of the states of all shapes: every change gives the shape a revision number that is never used again
+/// for any shape.
 static glint_key revision_of(const glint_scene *scene)
 {
     enum { CHUNK = 64 };
@@ -423,7 +425,8 @@ glint_status glint_geometry_of(const glint_scene *scene, glint_geometry **out, g
             return status;
         }
         glint_geometry_release(scene->geometry);
-        ((glint_scene *)scene)->geometry = geometry; // a cache: invisible from outside
+        // The cache may be changed in a constant scene, because no caller can see it.
+        ((glint_scene *)scene)->geometry = geometry;
     }
     *out = glint_geometry_retain(scene->geometry);
     return GLINT_OK;

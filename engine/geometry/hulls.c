@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-/// Boxes are widened by this fraction of the mesh's size. If a ray starts up to 2^30 mesh sizes away, rounding may
-/// turn a near miss into a crossing, and a ray must find all triangles that it crosses.
+/// Boxes are widened by this fraction of the mesh's size, because a ray must find all triangles that it crosses. If
+/// the ray starts up to 2^30 mesh sizes away, rounding may turn a near miss of a box into a hit.
 #define HULL_SLACK 0x1p-20
 
 /// A tree that geometries share as long as the positions of the mesh and the BVH's frame do not change.
@@ -45,7 +45,7 @@ static glint_key key_of(const glint_geometry *geometry, const glint_hull *hull)
     return key;
 }
 
-/// Returns by how much to widen the boxes of the hull, in the BVH's frame.
+/// Returns the distance by which the boxes of the hull are widened, in the BVH's frame.
 static float slack_of(const glint_box *boxes, uint32_t count)
 {
     float widest = 0;
@@ -118,8 +118,8 @@ glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geo
     return GLINT_OK;
 }
 
-/// Counts the edges that cross one half of one axis, as seen along the ray. An edge has the same numbers in both of
-/// its triangles.
+/// Counts the triangle's edges that cross one half of an axis of the plane perpendicular to the ray. An edge has the
+/// same numbers in both of its triangles.
 int glint_prim_crossing(const glint_prim *triangle, const double from[3], const double d[3])
 {
     int z = fabs(d[1]) > fabs(d[0]);

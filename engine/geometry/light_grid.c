@@ -9,42 +9,45 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SMALLEST_COUNT 64 ///< spheres; fewer are faster to test one by one
+#define SMALLEST_COUNT 64 ///< smallest number of spheres: fewer are faster to test one by one
 /// Largest radius of a sphere relative to its distance; also the smallest cosine to the light's axis
 #define WIDEST 0.25
-#define CELLS_A_RADIUS 3.0 ///< a cell's side, in mean radii
-#define COVERED_MAX 4.0 ///< a sphere's radius in cells; larger ones are tested one by one
-#define ENTRIES_MAX 4 ///< entries per sphere on average, at most
-#define ENTRIES_LEAST 2 ///< entries per sphere; with fewer, cells are so wide that they hold too many spheres
+#define CELLS_A_RADIUS 3.0 ///< smallest side of a cell, in mean radii of the spheres
+#define COVERED_MAX 4.0 ///< largest radius of a sphere in a cell, in cell sides; larger spheres are tested one by one
+#define ENTRIES_MAX 4 ///< largest mean number of entries per sphere
+/// smallest limit on the mean number of entries per sphere: with a lower limit, cells are so wide that they hold too
+/// many spheres
+#define ENTRIES_LEAST 2
 /// Bytes of an entry and a cell; there are at most as many cells as entries
 #define ENTRY_BYTES (4 * sizeof(uint32_t))
-#define COUNT_MAX 32767 ///< most columns or rows
-#define SORTED_FROM 24 ///< entries per cell on average, from which sorting them pays
-#define SLICES 1024 ///< slices of depth for sorting
-#define CENTER_SLACK 0x1p-21 ///< shift of a position by float rounding, relative to 1 and to the position
+#define COUNT_MAX 32767 ///< largest number of columns or rows
+#define SORTED_FROM 24 ///< mean number of entries per cell from which sorting the entries by depth pays
+#define SLICES 1024 ///< number of slices of depth for sorting
+#define CENTER_SLACK 0x1p-21 ///< error bound of a position from float rounding, relative to 1 plus the position
 /// Steps by which rounding may shift an entry's position and a point's, along both axes together
 #define STEP_SLACK 1.5
-#define CELL_SLACK 0x1p-21 ///< further shift, as a fraction of the grid's width
+#define CELL_SLACK 0x1p-21 ///< additional error bound of a position, as a fraction of the grid's width
 /// Largest distance of a sphere, in the BVH's units; differences of two are then finite, too
 #define FARTHEST 0x1p100
-#define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< largest `near` of an entry
+#define NEAR_MOST ((1u << (32 - GLINT_GRID_RADIUS_BITS)) - 1) ///< largest value of an entry's `near`
 
 /// A small sphere as the light sees it.
 typedef struct projected_sphere {
-    float center[2], reach; ///< its centre, and how far from there a segment that hits it may be
+    float center[2], reach; ///< position of its centre, and the distance within which a segment must pass to hit the
+        ///< sphere
     float radius; ///< radius of its circle in the light's view: see glint_light_grid
-    float near; ///< w of its nearest point
+    float near; ///< depth w of its nearest point
     uint32_t id;
 } projected_sphere;
 
 typedef struct grid_maker {
     const glint_geometry_table *table;
     glint_light_grid *grid;
-    projected_sphere *projected; ///< scratch, one for each primitive of the table
+    projected_sphere *projected; ///< scratch: one for each primitive of the table
     uint32_t count; ///< number of `projected`
-    float least[2], most[2]; ///< bounds of the positions that they cover
-    float near, far; ///< least and largest `near`
-    size_t max_bytes; ///< bytes that entries and cells may take
+    float least[2], most[2]; ///< bounds of the positions that the spheres cover
+    float near, far; ///< smallest and largest `near` of the spheres
+    size_t max_bytes; ///< most bytes that entries and cells may take
 } grid_maker;
 
 // ---- The light's view ----
@@ -65,8 +68,8 @@ static bool is_small(const grid_maker *maker, const glint_prim *prim, double off
     return maker->grid->directional || radius < WIDEST * distance;
 }
 
-/// Sets the axes along the mean direction to small primitives. Returns false if there are too few, or if they are all
-/// around.
+/// Sets the axes along the mean direction to small primitives. Returns false if there are too few of them, or if they
+/// surround the light.
 static bool aim(grid_maker *maker)
 {
     glint_light_grid *grid = maker->grid;
@@ -101,7 +104,7 @@ static bool aim(grid_maker *maker)
     return true;
 }
 
-/// Computes the position of a sphere in the light's view. False: it is too far to the side.
+/// Computes the position of a sphere in the light's view. False: the sphere is too far to the side.
 ///
 /// The squared distance of a segment at (u, v) from the centre is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2). A
 /// segment that hits the sphere therefore has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the right side
@@ -128,7 +131,7 @@ static bool project_sphere(const grid_maker *maker, const glint_prim *prim, uint
     return r < 0.5 && distance < FARTHEST && isfinite(out->reach);
 }
 
-/// Adds a primitive that is in no cell. Returns false if there are too many.
+/// Adds a primitive that is tested for every point instead of being in cells. Returns false if there are too many.
 static bool add_other(glint_light_grid *grid, uint32_t id)
 {
     if (grid->other_count == GLINT_GRID_OTHERS)
@@ -164,7 +167,8 @@ static float mean_reach(const grid_maker *maker)
     return (float)(sum / maker->count);
 }
 
-/// Moves primitives larger than `limit` to the others. Returns false if there are too many, and changes nothing.
+/// Moves primitives larger than `limit` out of the cells, to the primitives that are tested one by one. If there are
+/// too many, changes nothing and returns false.
 static bool take_large(grid_maker *maker, float limit)
 {
     uint32_t large = 0, kept = 0;
@@ -201,8 +205,8 @@ static void bound_centers(grid_maker *maker)
 /// Clamps a finite x. fminf and fmaxf would be function calls.
 static inline uint32_t clamp(float x, float most) { return (uint32_t)(int32_t)(x < 0 ? 0 : x < most ? x : most); }
 
-/// Computes the first and last cell of a sphere along both axes, by the float arithmetic of the stage, which is
-/// monotonic.
+/// Computes the first and last cell of a sphere along both axes, with the same float arithmetic as the stage. This
+/// arithmetic is monotonic.
 static inline void cells_of(const glint_light_grid *grid, const projected_sphere *s, uint32_t first[2],
                             uint32_t last[2])
 {
@@ -213,7 +217,7 @@ static inline void cells_of(const glint_light_grid *grid, const projected_sphere
     }
 }
 
-/// Returns the number of entries with cells of this side; if it is above `limit`, a number above `limit`.
+/// Returns the number of entries for cells with this side. Above `limit`, it may be any number above `limit`.
 static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
 {
     glint_light_grid *grid = maker->grid;
@@ -236,7 +240,7 @@ static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
     return entries;
 }
 
-/// Chooses the smallest cells that are large enough, and returns the number of entries; 0: none are.
+/// Chooses the smallest cells whose entries fit into the limit, and returns the number of entries; 0: no cells do.
 static uint64_t choose_cells(grid_maker *maker)
 {
     const uint64_t most = (uint64_t)ENTRIES_MAX * maker->count + 1024, fit = maker->max_bytes / ENTRY_BYTES;
@@ -260,7 +264,7 @@ static uint64_t choose_cells(grid_maker *maker)
 
 static size_t seen_bytes(const grid_maker *maker) { return maker->table->prim_count * sizeof *maker->projected; }
 
-/// Sorts the spheres by slices of depth; `near` becomes the front of the slice.
+/// Sorts the spheres by slices of depth; the `near` of each sphere becomes the front of its slice.
 static bool sort_by_depth(grid_maker *maker)
 {
     projected_sphere *sorted = glint_scratch_resize(NULL, 0, seen_bytes(maker));
@@ -295,13 +299,13 @@ typedef struct grid_entries {
     uint32_t *center, *size, *id;
 } grid_entries;
 
-/// Returns the part of a sphere's entries that is the same in all cells.
+/// Returns the bits of a sphere's entries that are the same in all cells.
 static uint32_t size_of(const glint_light_grid *grid, const projected_sphere *s)
 {
     const double steps = GLINT_GRID_STEPS * (double)grid->cells;
     const double most = grid->count[0] > grid->count[1] ? grid->count[0] : grid->count[1];
     const double radius = (double)s->radius * steps + STEP_SLACK + CELL_SLACK * GLINT_GRID_STEPS * most;
-    // the stage computes it in the same way for a point
+    // the stage computes the depth of a point in the same way
     const uint32_t near = clamp((s->near - grid->nearest) * grid->slices, NEAR_MOST);
     return near << GLINT_GRID_RADIUS_BITS | (uint32_t)(int32_t)(radius / GLINT_GRID_RADIUS + 1);
 }
@@ -313,7 +317,7 @@ static uint32_t step_of(const glint_light_grid *grid, const projected_sphere *s,
     return (uint32_t)(int32_t)((step + GLINT_GRID_ASIDE) * GLINT_GRID_STEPS + 0.5);
 }
 
-/// Writes a sphere to the position `next` of each of its cells.
+/// Writes a sphere to each of its cells, at the cell's position `next`.
 static void enter(const glint_light_grid *grid, const projected_sphere *s, const uint32_t first[2],
                   const uint32_t last[2], uint32_t *next, const grid_entries *entries)
 {
@@ -328,7 +332,8 @@ static void enter(const glint_light_grid *grid, const projected_sphere *s, const
         }
 }
 
-/// Counts each cell's spheres in `next`; with `entries`, writes each sphere to the position `next` of its cells.
+/// Without `entries`, counts each cell's spheres in `next`. With `entries`, writes each sphere to each of its cells,
+/// at the cell's position `next`.
 static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *entries)
 {
     const glint_light_grid *grid = maker->grid;
@@ -344,7 +349,8 @@ static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *
     }
 }
 
-/// Allocates the entries in one block that begins at `center`, with padding that the stage loads after the last one.
+/// Allocates the entries in one block that begins at `center`, with padding after the last entry, because the stage
+/// also loads what follows it.
 static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *out)
 {
     const size_t length = (size_t)count + GLINT_GROUP;
@@ -374,7 +380,7 @@ static bool fill(grid_maker *maker, uint64_t count)
     const float depth = maker->far - maker->near;
     grid->nearest = maker->near;
     grid->slices = depth > 0 && isfinite(NEAR_MOST / depth) ? NEAR_MOST / depth : 0;
-    uint32_t *next = begin + 1; // begin[cell + 1] runs from a cell's begin to its end
+    uint32_t *next = begin + 1; // begin[cell + 1] moves from the cell's first entry to its end
     spread(maker, next + 1, NULL);
     for (size_t cell = 0; cell < cells; cell++)
         next[cell + 1] += next[cell];
@@ -414,6 +420,6 @@ void glint_light_grid_destroy(glint_light_grid *grid)
     if (!grid)
         return;
     free((void *)(uintptr_t)grid->begin);
-    free((void *)(uintptr_t)grid->center); // the other entries are in the same block
+    free((void *)(uintptr_t)grid->center); // the other arrays of entries are in the same block
     free(grid);
 }

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define GLINT_MEDIA_MAX 8 ///< nested media; with more, the outermost are forgotten
+#define GLINT_MEDIA_MAX 8 ///< most nested media; with more, the outermost are dropped
 #define GLINT_NO_MEDIUM 0xffffffffu
 
 typedef struct glint_media {

@@ -34,7 +34,7 @@ static int copy_face(double *out, const glint_face *face)
     return 6;
 }
 
-/// Writes a key over the positions of all parts, which represents them.
+/// Writes a key of the positions of all parts; it stands for the parts.
 static int combined_record(const glint_geometry *geometry, const glint_combined *combined,
                            double out[GLINT_PRIM_RECORD_MAX])
 {
@@ -48,7 +48,7 @@ static int combined_record(const glint_geometry *geometry, const glint_combined 
     return 1 + (int)(sizeof key / sizeof *out);
 }
 
-/// Writes a key over the positions of a mesh's triangles, which represents them.
+/// Writes a key of the positions of a mesh's triangles; it stands for the triangles.
 static int hull_record(const glint_geometry *geometry, const glint_prim *part, double out[GLINT_PRIM_RECORD_MAX])
 {
     const glint_hull *hull = &geometry->hulls[part->item];
@@ -148,7 +148,7 @@ static void basis(const double n[3], double x[3], double y[3])
     y[0] = b, y[1] = sign + n[1] * n[1] * a, y[2] = -n[1];
 }
 
-/// Makes a map with x and y perpendicular to `along`, of length `radius`; z is `along`.
+/// Makes a map whose x and y axes are perpendicular to `along` and have length `radius`; its z axis is `along`.
 static void round_map(double m[3][4], const double origin[3], const double along[3], double radius)
 {
     double n[3], x[3], y[3];
@@ -211,8 +211,8 @@ static glint_transform unit_map(const glint_shape_desc *desc)
     return map;
 }
 
-/// Computes the magnitudes for rounding errors: for the faces, and for the curved side, which is near 1 in each
-/// direction of the unit shape.
+/// Computes the magnitudes from which rounding errors are bounded: for the faces and for the curved side. The curved
+/// side of the unit shape is near 1 in each direction.
 static void bound_solid(const glint_prim *prim, const glint_placing *placing, const glint_transform *unit,
                         glint_solid *solid, glint_face *faces)
 {
@@ -237,7 +237,8 @@ double glint_linear_scale(double m[3][3])
     return scale;
 }
 
-/// Makes a solid. unit: the map from the unit shape to its own space. faces: its faces, not bounded yet.
+/// Makes a solid. unit: the map from the unit shape to the shape's own space. faces: the solid's faces, without error
+/// bounds so far.
 static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *unit,
                        const glint_placing *placing, glint_face *faces)
 {

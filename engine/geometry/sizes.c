@@ -1,4 +1,4 @@
-/// Limits of sizes, and of distances from where rays begin: the squares that kernels compute must not overflow or
+/// Limits of sizes and of distances from ray origins, so that the squares that kernels compute neither overflow nor
 /// underflow.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -7,15 +7,16 @@
 #include <stdio.h>
 
 #define SIZE_LEAST 1e-150 ///< world units
-#define SIZE_MOST 1e150 ///< of a curved solid; a sphere is measured in its own units
-#define AWAY_MOST 1e150 ///< largest distance, in sizes
+#define SIZE_MOST 1e150 ///< largest size of a curved solid; a sphere is measured in its own units
+#define AWAY_MOST 1e150 ///< largest distance of a ray's origin from a shape, in sizes of the shape
 
 typedef struct extents {
-    double least, most; ///< of the widths that are squared
+    double least, most; ///< smallest and largest width that is squared
     double longest; ///< in any direction
 } extents;
 
-/// Computes the sizes that kernels square. False: boxes, planes and triangles use heights, which are not squared.
+/// Computes the sizes that kernels square. False: there are none, because for boxes, planes and triangles kernels use
+/// heights, which are not squared.
 static bool extents_of(const glint_geometry *geometry, const glint_prim *prim, extents *out)
 {
     *out = (extents) { prim->radius, 1, prim->radius };
