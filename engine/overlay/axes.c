@@ -7,14 +7,14 @@
 #include <string.h>
 
 #define THICK 0.18 ///< thickness of a line, in font sizes
-#define NAME_GAP 0.75 ///< from an axis's end to the middle of its name, in font sizes
+#define NAME_GAP 0.75 ///< distance from an axis's end to the middle of its name, in font sizes
 
 /// x, y and z: red, green and blue, linear.
 static const double colors[3][3] = { { 0.80, 0.07, 0.05 }, { 0.10, 0.52, 0.06 }, { 0.07, 0.19, 0.90 } };
 
 typedef struct axis {
-    double end[2]; ///< from the origin of the axes, pixels to the right and down
-    double away; ///< along the view, away from the eye, -1 .. 1
+    double end[2]; ///< vector from the origin of the axes to the end of this axis; pixels to the right and down
+    double away; ///< component of this axis along the view, away from the eye, -1 .. 1
     double name[2]; ///< position of the middle of its name
 } axis;
 

@@ -11,11 +11,11 @@
 #include <math.h>
 #include <string.h>
 
-#define LINE 0.08 ///< thickness, in font sizes
+#define LINE 0.08 ///< thickness of an axis's line, in font sizes
 #define TICK 0.35 ///< length of a mark, in font sizes
 #define GAP 0.35 ///< gap between a mark and its number, and between numbers and the name, in font sizes
-#define SHORTEST 1.5 ///< length of an axis with numbers, in font sizes
-#define WANTED 5 ///< steps between round numbers, at least, if they fit
+#define SHORTEST 1.5 ///< shortest axis that has numbers, in font sizes
+#define WANTED 5 ///< smallest number of steps between round numbers, if the numbers fit
 #define NEAREST 1e-6 ///< smallest depth drawn, relative to the depth of the box's farthest corner
 #define TEXTS_MAX (3 * (GLINT_OVERLAY_TICKS_MAX + 1))
 
@@ -25,9 +25,9 @@ typedef struct rect {
 
 typedef struct edge {
     double ends[2][3]; ///< in the world
-    double shares[2]; ///< range of the edge in front of the eye, 0 .. 1 between `ends`
-    double at[2][2]; ///< ends of that range in the picture, pixels
-    double out[2]; ///< unit vector in the picture across the edge, away from the box
+    double shares[2]; ///< the part of the edge in front of the eye: its begin and end, 0 .. 1 between `ends`
+    double at[2][2]; ///< ends of that part in the picture, pixels
+    double out[2]; ///< unit vector in the picture, perpendicular to the edge and away from the box
 } edge;
 
 typedef struct box_axes {
@@ -53,7 +53,7 @@ static bool project(const box_axes *axes, const double p[3], double out[2])
 
 // ---- The box, or the cell ----
 
-/// Returns a corner: `at` chooses the low (0) or high (1) end of each side.
+/// Returns a corner of the box. `at` chooses the low (0) or high (1) end of each side.
 static void corner_of(const glint_overlay_desc *d, const int at[3], double out[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -68,7 +68,7 @@ static double length_of(const glint_overlay_desc *d, int direction)
     return d->has_sides ? sqrt(vec_dot(d->sides[direction], d->sides[direction])) : d->box[1][direction] - d->box[0][direction];
 }
 
-/// Returns a side of a cell; for a side of length 0, the direction perpendicular to the other two.
+/// Returns a side of a cell. For a side of length 0, returns a direction perpendicular to the other two sides.
 static void side_of(const glint_overlay_desc *d, int i, double out[3])
 {
     vec_copy(out, d->sides[i]);
@@ -76,7 +76,7 @@ static void side_of(const glint_overlay_desc *d, int i, double out[3])
         vec_cross(out, d->sides[(i + 1) % 3], d->sides[(i + 2) % 3]);
 }
 
-/// Returns the outward direction of a cell at the high end of a side.
+/// Returns the outward normal of a cell's face at the high end of a side.
 static void find_outward(const glint_overlay_desc *d, int direction, double out[3])
 {
     double along[3], u[3], v[3];
@@ -101,7 +101,7 @@ static bool is_face_seen(const box_axes *axes, int direction, int end)
     return c->orthographic ? sign * vec_dot(out, c->view[2]) < -1e-9 : sign * vec_dot(out, eye) > 0;
 }
 
-/// Returns whether no other direction is more upright in the picture.
+/// Returns whether this direction is the most upright one in the picture.
 static bool is_upright(const box_axes *axes, int direction)
 {
     const glint_overlay_desc *d = axes->layout->desc;
@@ -133,7 +133,7 @@ static bool is_seen(const box_axes *axes, int direction, int end)
     return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - position) > 0;
 }
 
-/// Clips an edge to the part in front of the eye; false: no part is.
+/// Clips an edge to the part in front of the eye; false: no part of it is.
 static bool cut(const box_axes *axes, edge *e)
 {
     const double a = depth_of(axes, e->ends[0]), b = depth_of(axes, e->ends[1]), least = axes->nearest * (1 + 1e-9);
@@ -148,8 +148,8 @@ static bool cut(const box_axes *axes, edge *e)
     return there;
 }
 
-/// Returns how far an edge lies to the side where its axis belongs: to the left for the upright direction, down for the
-/// others. A small share of the other coordinate decides between equals.
+/// Returns how far an edge lies to the side where its axis belongs: to the left for the upright direction, down for
+/// the others. A small share of the other coordinate decides between edges that are equally far to that side.
 static double reach_of(const box_axes *axes, const edge *e, int direction)
 {
     const double left = -(e->at[0][0] + e->at[1][0]), down = e->at[0][1] + e->at[1][1];
@@ -185,7 +185,7 @@ static bool find_edge(const box_axes *axes, int direction, edge *out)
     return found;
 }
 
-/// Finds the side of the edge in the picture that is away from the box. False: the edge is too short to have one.
+/// Finds the direction in the picture that leads away from the box at the edge. False: the edge is too short.
 static bool find_side(const box_axes *axes, edge *e)
 {
     const glint_overlays *o = axes->layout->overlays;
@@ -283,7 +283,7 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
         steps *= 0.8;
     } while (!place_marks(axes, e, &marks, at) && steps > 0.5);
     glint_layout_line(layout, e->at[0], offset, half, desc->color);
-    double reach = tick + gap; // from the edge to beyond the numbers
+    double reach = tick + gap; // distance from the edge to the outer side of the numbers
     for (int i = 0; i < marks.count; i++) {
         const double mark[2] = { e->out[0] * tick, e->out[1] * tick };
         if (isnan(at[i][0]))

@@ -7,7 +7,7 @@
 #define BAR 0.9 ///< thickness of the bar, in font sizes
 #define TICK 0.3 ///< length of a mark, in font sizes
 #define GAP 0.3 ///< gap between a mark and its number, in font sizes
-#define WANTED 4 ///< steps between round numbers, at least
+#define WANTED 4 ///< smallest number of steps between round numbers
 #define COLORS 256
 
 typedef struct bar {
@@ -18,13 +18,13 @@ typedef struct bar {
 
 static bool is_horizontal(const glint_layout *layout) { return layout->desc->orientation == GLINT_HORIZONTAL; }
 
-/// Returns the pixels that numbers need, from the middle of one to the middle of the next.
+/// Returns the smallest distance between the middles of neighbouring numbers, in pixels.
 static double pitch(const glint_layout *layout, const bar *b)
 {
     return is_horizontal(layout) ? b->marks.widest + layout->em : layout->typeface.height * 1.25;
 }
 
-/// Adds a number if it lies on the bar.
+/// Adds a number to the marks if the number lies on the bar.
 static void add_mark(const glint_layout *layout, bar *b, double value)
 {
     const glint_overlay_desc *desc = layout->desc;
@@ -34,8 +34,8 @@ static void add_mark(const glint_layout *layout, bar *b, double value)
         b->marks.of[before].share = glint_log(value / desc->low) / glint_log(desc->high / desc->low);
 }
 
-/// Marks powers of ten. If there are few, also marks two and five times each; if many, only every second, third and so
-/// on; if none, the ends.
+/// Marks the powers of ten. If there are few of them, also marks two and five times each; if there are many, marks
+/// only every second, third and so on; if there are none, marks the ends of the bar.
 static void find_powers(const glint_layout *layout, bar *b)
 {
     static const double factors[] = { 1, 2, 5 };
@@ -93,7 +93,7 @@ static bar make_bar(const glint_layout *layout)
     return b;
 }
 
-/// Returns how far numbers extend beyond each end of the bar.
+/// Returns how many pixels the numbers extend beyond each end of the bar.
 static int overhang(const glint_layout *layout, const bar *b)
 {
     return (is_horizontal(layout) ? b->marks.widest : layout->typeface.height) / 2;
@@ -114,7 +114,8 @@ void glint_colorbar_measure(glint_layout *layout)
     layout->width = b.title_width > layout->width ? b.title_width : layout->width;
 }
 
-/// Draws the colours from x, y on: the first at the left or at the bottom.
+/// Draws the colours into a rectangle whose upper left corner is x, y. The first colour is at the left or at the
+/// bottom.
 static void draw_colors(const glint_layout *layout, const bar *b, int x, int y)
 {
     const uint32_t *table = layout->desc->has_colors ? layout->desc->colors : glint_colormap_table(layout->desc->map);

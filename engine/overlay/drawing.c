@@ -1,4 +1,4 @@
-/// What overlays are made of: lines of text and rectangles, as stamps.
+/// Draws the elements of overlays, lines of text and rectangles, as stamps.
 #include "engine/overlay/layout.h"
 
 #include <math.h>

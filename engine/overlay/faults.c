@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SHOWN 40 ///< characters of a text shown in a message, at most
+#define SHOWN 40 ///< most characters of a text shown in a message
 
 typedef struct check {
     const glint_layout *layout;
@@ -86,7 +86,7 @@ static void check_position(const check *c)
         beyond = behind > beyond ? behind : beyond;
     }
     const bool is_text = l->desc->kind == GLINT_OVERLAY_LABEL || glint_overlay_points(l->desc);
-    if (!is_text || beyond <= l->em / 4) // the space around letters
+    if (!is_text || beyond <= l->em / 4) // at most the space around the letters is outside the picture
         return;
     const char *line = find_widest(l, &length);
     if (!l->desc->has_position && l->size[0] > sides[0])
@@ -98,7 +98,7 @@ static void check_position(const check *c)
     warn(c, message);
 }
 
-/// Warns about an arrow, line, arc or label at a point that is not shown, or only in part.
+/// Warns about an arrow, line, arc or label at a point if the picture shows it only in part or not at all.
 static void check_pointer(const check *c)
 {
     const glint_layout *l = c->layout;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_SIZE 10.0 ///< default font size, at least; pixels
+#define LEAST_SIZE 10.0 ///< smallest default font size; pixels
 #define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
@@ -83,7 +83,7 @@ glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, dou
     return layout;
 }
 
-/// Remembers the rectangle of an overlay, which later texts must not cover.
+/// Stores the rectangle of an overlay, so that later texts do not cover it.
 static void keep_place(glint_layout *layout)
 {
     glint_place *place = layout->place;

@@ -23,7 +23,8 @@
 typedef struct glint_overlays_camera {
     bool orthographic;
     double eye[3];
-    double view[3][3]; ///< right and up, half a pixel long; away from the eye, unit length
+    double view[3][3]; ///< the vectors to the right and up, each half a pixel long, and the unit vector away from the
+        ///< eye
     double span[2]; ///< see glint_plan_camera
     double pixel_offset; ///< position of the sample in its pixel, 0 .. 1
 } glint_overlays_camera;
@@ -37,24 +38,25 @@ typedef struct glint_hidden_parts {
 /// The overlays of one frame. Immutable, reference counted; any thread.
 typedef struct glint_overlays {
     atomic_int references;
-    int width, height; ///< of the whole picture, pixels
+    int width, height; ///< size of the whole picture, pixels
     double view[3][3]; ///< unit vectors to the right, up and away from the eye
     glint_overlays_camera camera;
     glint_key letters; ///< see glint_letters_key
-    glint_hidden_parts *hidden; ///< of each overlay; NULL: none are hidden, or none are known yet. Owned
+    glint_hidden_parts *hidden; ///< hidden parts of each overlay's curve; NULL: none are hidden, or they are not
+        ///< known yet. Owned
     size_t count;
     glint_overlay_desc of[]; ///< in drawing order
 } glint_overlays;
 
 extern const char *const glint_overlay_kinds[]; ///< "label", ...
 
-/// Returns whether an overlay points at a place in the world: arrow, line, arc, label at a point.
+/// Returns whether an overlay points at a place in the world: an arrow, line, arc, or label at a point.
 static inline bool glint_overlay_points(const glint_overlay_desc *desc)
 {
     return desc->kind >= GLINT_OVERLAY_ARROW || (desc->kind == GLINT_OVERLAY_LABEL && desc->has_point);
 }
 
-/// Projects a point to the picture, pixels from the upper left corner. Returns its distance along the view.
+/// Projects a point to the picture, in pixels from the upper left corner. Returns the point's distance along the view.
 double glint_overlays_project(const glint_overlays_camera *camera, const double p[3], double out[2]);
 
 /// Copies the scene's overlays. *out is NULL if there are none, or none is visible.
@@ -69,9 +71,9 @@ glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key);
 
 /// A rectangle of one colour, with the codes of one picture.
 typedef struct glint_stamp {
-    int x, y, width, height; ///< pixels of the whole picture; may be outside it
-    uint8_t *coverage; ///< width x height; NULL: 255 everywhere. Owned
-    uint8_t opacity; ///< factor of the coverage, 255: opaque
+    int x, y, width, height; ///< rectangle in the whole picture, pixels; may lie outside the picture
+    uint8_t *coverage; ///< width * height values; NULL: 255 everywhere. Owned
+    uint8_t opacity; ///< factor of the coverage; 255: opaque
     uint16_t ink[3]; ///< codes
 } glint_stamp;
 
@@ -81,7 +83,7 @@ typedef struct glint_stamps {
     size_t count, capacity;
     bool lost; ///< out of memory: some stamps are missing
     glint_transfer transfer; ///< of the codes
-    int bits; ///< of the codes: 8 or 16
+    int bits; ///< bits of the codes: 8 or 16
 } glint_stamps;
 
 /// dpi  pixels per inch; 0: not given.
@@ -90,7 +92,7 @@ glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, gli
 /// Calls `warns` for overlays outside the picture, lines wider than the picture, and letters that the font lacks.
 glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
                                   void *context, glint_error *error);
-/// Draws a separate colour bar on a sheet of `sides` pixels; its lengths are in pixels.
+/// Draws a separate colour bar whose lengths are in pixels on a sheet of `sides` pixels.
 /// x, y    its upper left corner.
 /// stamps  out: the stamps are added here; NULL: only measures.
 /// size    out: width and height.
@@ -99,7 +101,7 @@ void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters
 void glint_stamps_free(glint_stamps *stamps);
 /// Adds a stamp of a linear colour. Takes over its coverage, which is freed at once if memory is short.
 void glint_stamps_add(glint_stamps *stamps, glint_stamp stamp, const double color[3]);
-/// Returns whether any stamp has a pixel in `count` rows of the whole picture, from row `first` on.
+/// Returns whether a stamp has a pixel in the `count` rows of the whole picture that begin with row `first`.
 bool glint_stamps_touch(const glint_stamps *stamps, int first, int count);
 /// Draws the stamps on a row of codes.
 /// codes     `width` pixels of 3 or 4 channels, of the stamps' bits; alpha is not premultiplied.

@@ -8,15 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NEAREST 1e-6 ///< least depth that is drawn, as a fraction of the greatest
-#define LINE 0.125 ///< default width of a line, in sizes of letters
-#define HEAD_LENGTH 6.0 ///< of an arrow, in widths of its line
-#define HEAD_HALF 2.0 ///< half of the head's width, likewise
-#define DASH 3.0 ///< length of a dash, likewise
-#define PERIOD 7.0 ///< from one dash to the next, likewise
-#define RADIUS_SHARE 12.0 ///< of the picture's height that an arc's radius is by default
-#define SPACE 0.3 ///< between a text and what it must not cover, in sizes of letters
-#define FAR 1e6 ///< greatest distance of a text from the picture, pixels
+#define NEAREST 1e-6 ///< smallest depth that is drawn, as a fraction of the greatest depth of the curve
+#define LINE 0.125 ///< default width of a line, in font sizes
+#define HEAD_LENGTH 6.0 ///< length of an arrow's head, in widths of its line
+#define HEAD_HALF 2.0 ///< half of the head's width, in widths of its line
+#define DASH 3.0 ///< length of a dash, in widths of its line
+#define PERIOD 7.0 ///< distance from the begin of a dash to the begin of the next, in widths of its line
+#define RADIUS_SHARE 12.0 ///< the default radius of an arc is the picture's height divided by this
+#define SPACE 0.3 ///< distance between a text and what it must not cover, in font sizes
+#define FAR 1e6 ///< limit of the coordinates of a text's corner, pixels
 
 static double length_of(double x, double y) { return sqrt(x * x + y * y); }
 
@@ -54,7 +54,7 @@ static bool project(const glint_overlays *overlays, glint_pointer *p)
     return there;
 }
 
-/// Moves the end of a line that is behind the camera to where the line comes in front of it.
+/// If one end of a line is behind the camera, moves this end to the point where the line comes in front of the camera.
 static void cut_to_camera(const glint_overlays *overlays, glint_pointer *p)
 {
     double ends[2][3];
@@ -114,7 +114,8 @@ static void find_line(const glint_overlays *overlays, const glint_overlay_desc *
     p->length = (p->range[1] - p->range[0]) * length_of(offset[0], offset[1]);
 }
 
-/// Returns the unit direction halfway between two unit directions; of opposite ones, one that faces the camera.
+/// Returns the unit direction halfway between two unit directions. If they are opposite, returns a direction
+/// perpendicular to them and to the view, so that the arc faces the camera.
 static void halve(const glint_overlays *overlays, const double a[3], const double b[3], double out[3])
 {
     for (int c = 0; c < 3; c++)
@@ -165,7 +166,7 @@ void glint_pointer_find(const glint_overlays *overlays, const glint_overlay_desc
     }
 }
 
-/// Returns the point before a parameter, and the share of the step to the next one.
+/// Returns the index of the curve's point before a parameter, and the share of the step to the next point.
 static int piece_at(const glint_pointer *p, double at, double *share)
 {
     const int i = (int)fmin(fmax(at, 0), p->count - 2);
@@ -205,7 +206,7 @@ static void add_part(glint_strokes *strokes, const glint_pointer *p, double firs
     }
 }
 
-/// Adds what is drawn of a hidden part.
+/// Adds the dashes of a hidden part of the curve, or nothing if hidden parts are not drawn.
 static void add_hidden(glint_strokes *strokes, const glint_layout *layout, const glint_pointer *p, const double part[2],
                        double last)
 {
@@ -217,7 +218,7 @@ static void add_hidden(glint_strokes *strokes, const glint_layout *layout, const
         add_part(strokes, p, at, fmin(at + DASH * width, end));
 }
 
-/// Adds the curve up to a parameter.
+/// Adds the strokes of the curve up to a parameter.
 static void add_curve(glint_strokes *strokes, const glint_layout *layout, const glint_pointer *p, double last)
 {
     double at = p->range[0];
@@ -273,7 +274,7 @@ void glint_pointer_draw(const glint_layout *layout, double dpi)
 
 // ---- Texts ----
 
-/// Returns the parameter of the place that the text is next to.
+/// Returns the parameter of the curve's point that the text is next to.
 static double anchor_at(const glint_overlay_desc *desc, const glint_pointer *p)
 {
     return desc->kind == GLINT_OVERLAY_ARROW ? 1 : (p->range[0] + p->range[1]) / 2;
@@ -288,8 +289,8 @@ bool glint_pointer_shows_text(const glint_layout *layout)
     return p->count && !is_cut && desc->text[0] && !(hides && is_hidden(layout, anchor_at(desc, p)));
 }
 
-/// Finds the place that a text is next to, and the direction of its first position from there: in the direction of an
-/// arrow, above a line, outside an arc, above and to the right of a point.
+/// Finds the point that a text is next to, and the direction from this point in which the text is tried first: the
+/// direction of an arrow, above a line, outside an arc, above and to the right of a point.
 static void find_anchor(const glint_layout *layout, double anchor[2], double out[2])
 {
     const glint_overlay_desc *desc = layout->desc;
@@ -316,7 +317,7 @@ static void find_anchor(const glint_layout *layout, double anchor[2], double out
     out[1] = length > 0 ? out[1] / length : -sqrt(0.5);
 }
 
-/// Whether the curve of an overlay crosses a rectangle.
+/// Returns whether the curve of an overlay crosses a rectangle.
 static bool crosses(const glint_pointer *p, const double low[2], const double high[2])
 {
     bool does = false;
@@ -328,7 +329,7 @@ static bool crosses(const glint_pointer *p, const double low[2], const double hi
     return does;
 }
 
-/// Returns 0 if a text must not stand in a rectangle, 1 if it covers a line there, otherwise 2.
+/// Rates a rectangle for a text: 0 if it is not allowed there, 1 if it would cover a line, otherwise 2.
 static int rate(const glint_layout *layout, const double corner[2])
 {
     const double sides[2] = { layout->overlays->width, layout->overlays->height }, margin = SPACE * layout->em;
@@ -351,7 +352,8 @@ static int rate(const glint_layout *layout, const double corner[2])
 
 void glint_pointer_place(glint_layout *layout, double margin)
 {
-    static const int turns[8] = { 0, 1, 7, 2, 6, 3, 5, 4 }; // eighths of a circle: the nearest to the first first
+    // eighths of a circle, sorted by their angle from the first direction
+    static const int turns[8] = { 0, 1, 7, 2, 6, 3, 5, 4 };
     static const double r = 0.70710678118654752;
     static const double cosines[8] = { 1, r, 0, -r, -1, -r, 0, r };
     double anchor[2], first[2] = { 0, 0 };

@@ -6,33 +6,35 @@
 
 #define GLINT_POINTER_POINTS 65 ///< of an arc
 
-/// The points of an overlay that lie in front of the camera, in a row: 1 of a label, 2 of an arrow or a line, 65 of an
-/// arc. The curve between them has a parameter that is i at point i and grows evenly in the picture between points.
+/// The points of an overlay that points at the world, as far as they lie in front of the camera, in order: 1 for a
+/// label, 2 for an arrow or a line, 65 for an arc. The curve through them has a parameter that is i at point i and
+/// grows evenly in the picture between points.
 typedef struct glint_pointer {
     int count; ///< 0: nothing is drawn
     double world[GLINT_POINTER_POINTS][3];
-    double pixel[GLINT_POINTER_POINTS][2]; ///< from the picture's upper left corner
+    double pixel[GLINT_POINTER_POINTS][2]; ///< positions in pixels from the picture's upper left corner
     double depth[GLINT_POINTER_POINTS]; ///< along the view
-    double range[2]; ///< the parameters that are drawn: of lines, those in and close to the picture
-    double length; ///< of that part of the curve, pixels
-    bool behind[2]; ///< whether from and to lie behind the camera; of an arc or a label both are the same
+    double range[2]; ///< first and last parameter to draw; for lines, limited to the part in and close to the picture
+    double length; ///< length in pixels of the part of the curve in `range`
+    bool behind[2]; ///< whether the begin and the end of a line lie behind the camera; for an arc or a label both
+        ///< flags are equal
 } glint_pointer;
 
 /// Computes the curve of an overlay that points.
 void glint_pointer_find(const glint_overlays *overlays, const glint_overlay_desc *desc, glint_pointer *out);
-/// Computes the parameters of the part of piece `i`, between points i and i + 1, that lies in or close to the picture.
-/// Returns its length in pixels; below 0: no part does.
+/// Computes the parameters of the part of piece `i`, between points i and i + 1, that lies in or close to the
+/// picture. Returns the length of that part in pixels; below 0: there is none.
 double glint_pointer_piece(const glint_overlays *overlays, const glint_pointer *pointer, int i, double range[2]);
 /// Returns whether an arrow or a line ends where it begins.
 bool glint_pointer_is_point(const glint_overlay_desc *desc);
-/// Returns the point of the curve with a parameter.
+/// Returns the world point at a parameter of the curve.
 void glint_pointer_at(const glint_pointer *pointer, bool orthographic, double at, double world[3]);
-/// Returns the same point in the picture.
+/// Returns the pixel position at a parameter of the curve.
 void glint_pointer_pixel(const glint_pointer *pointer, double at, double pixel[2]);
 
-/// An overlay's curve, and the rectangle of its text or of all of it in the picture.
+/// An overlay's curve, and the rectangle in the picture of its text or, without a curve, of the whole overlay.
 typedef struct glint_place {
-    glint_pointer pointer; ///< of an overlay that does not point: count is 0
+    glint_pointer pointer; ///< the curve; its count is 0 if the overlay does not point at the world
     bool has_rect;
     double low[2], high[2]; ///< pixels
 } glint_place;
@@ -43,7 +45,7 @@ struct glint_layout;
 void glint_pointer_draw(const struct glint_layout *layout, double dpi);
 /// Returns whether the text of a placed overlay that points is drawn.
 bool glint_pointer_shows_text(const struct glint_layout *layout);
-/// Sets the corner of a text whose size is known: a free place next to what the overlay points at.
+/// Sets the corner of a text whose size is known: a free position next to the point or curve of the overlay.
 void glint_pointer_place(struct glint_layout *layout, double margin);
 
 #endif

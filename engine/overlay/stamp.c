@@ -42,8 +42,8 @@ bool glint_stamps_touch(const glint_stamps *stamps, int first, int count)
     return false;
 }
 
-/// Blends the ink into a pixel with values up to `most`, with a coverage of `share` / 255. With alpha, both colours are
-/// weighted by their alphas.
+/// Blends the ink into a pixel with values up to `most`, with the coverage `share` / 255. With alpha, both colours
+/// are weighted by their alphas.
 static void blend(uint32_t *pixel, const uint16_t ink[3], uint32_t share, int channels, uint32_t most)
 {
     const uint64_t over = (uint64_t)share * most;

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define TILE 64 ///< pixels of the side of a stamp, because a slanting stroke fills little of its rectangle
+/// side of a stamp, pixels. Stamps are small because a slanting stroke fills little of its bounding rectangle.
+#define TILE 64
 
 void glint_strokes_add(glint_strokes *strokes, const double from[2], const double to[2])
 {
@@ -30,7 +31,8 @@ static double distance_to(const double end[2], double x, double y)
     return sqrt(dx * dx + dy * dy);
 }
 
-/// Returns the distance of a point from a triangle, negative inside. Near a corner it is the distance from the edges.
+/// Returns the signed distance of a point from a triangle, negative inside. Near a corner it is the distance from the
+/// edges.
 static double distance_to_head(const double head[3][2], double x, double y)
 {
     double most = -INFINITY;
@@ -44,7 +46,8 @@ static double distance_to_head(const double head[3][2], double x, double y)
     return most;
 }
 
-/// Returns the distance of a point from the edge of shape number `i`, negative inside. The head follows the strokes.
+/// Returns the signed distance of a point from the edge of shape number `i`, negative inside. Number i counts the
+/// strokes, then the head.
 static double distance_from(const glint_strokes *strokes, size_t i, double x, double y)
 {
     if (i == strokes->count)
@@ -58,7 +61,8 @@ static void draw_tile(const glint_layout *layout, const glint_strokes *strokes, 
 {
     glint_stamp stamp = { .coverage = NULL };
     for (size_t i = 0; i < strokes->count + strokes->has_head; i++) {
-        if (distance_from(strokes, i, left + TILE / 2.0, top + TILE / 2.0) > TILE) // farther than half a diagonal
+        // the shape is farther from the stamp's middle than half the stamp's diagonal
+        if (distance_from(strokes, i, left + TILE / 2.0, top + TILE / 2.0) > TILE)
             continue;
         if (!stamp.coverage && !glint_layout_mask(layout, left, top, TILE, TILE, &stamp))
             return;
