@@ -122,8 +122,8 @@ void glint_combined_roles(glint_combined *combined)
     combined->alone = stack[0].alone;
 }
 
-/// Counts crossings along a fixed direction, which is unlikely to lie in a face or edge. Every direction gives the
-/// same result.
+/// Counts crossings along a fixed direction, which is unlikely to lie in a face or edge. The result does not depend
+/// on the direction.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double point[3])
 {
     static const double direction[3] = { 0.36, 0.48, 0.8 };

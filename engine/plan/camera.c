@@ -29,7 +29,7 @@ static void view_axes(const glint_camera_desc *desc, double forward[3], double r
     vec_cross(up, right, forward);
 }
 
-/// Computes half the size of a pixel at distance 1, and glint_plan_camera.span.
+/// Computes half the size of a pixel at distance 1, and the field `span` of glint_plan_camera.
 static void find_pixels(const glint_camera_desc *desc, double width, double height, double half[2], double span[2])
 {
     const double wide = desc->w > 0 ? width / desc->w : 1, high = desc->h > 0 ? height / desc->h : 1;

@@ -1,4 +1,4 @@
-/// The stages of the core.
+/// The declarations of the core's stages.
 #include "engine/plan/plan.h"
 
 static bool has_surfaces(const glint_plan *plan) { return plan->geometry->table.prim_count > 0; }

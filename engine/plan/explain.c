@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define CALLERS_MAX 8 ///< objects named for one effect; the rest are counted
+#define CALLERS_MAX 8 ///< largest number of objects named for one effect; the other objects are counted
 
 typedef struct explainer {
     glint_plan *plan;

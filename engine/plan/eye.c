@@ -8,11 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Media from the outermost to the innermost. The innermost is the smallest, or the last defined of equal ones.
+/// Media from the outermost to the innermost. The innermost medium is the one with the smallest object or, among
+/// objects of equal size, the one defined last.
 typedef struct around {
     uint32_t count;
     struct holder {
-        double size; ///< diagonal of its box
+        double size; ///< diagonal of the bounding box of its object
         uint32_t id, material;
     } in[GLINT_MEDIA_MAX];
 } around;
@@ -90,8 +91,8 @@ static void add_triangle(hull *part, const glint_plan *plan, const glint_prim *p
     part->exits += glint_prim_crossing(prim, plan->camera.eye, plan->camera.forward);
 }
 
-/// Collects the media around the eye. hulls: one per part, if there are triangles. A renderer may be arranging the
-/// primitives at the same time.
+/// Collects the media around the eye. hulls: one entry per part, or NULL if there are no triangles. A renderer may be
+/// arranging the primitives at the same time.
 static void find_media(const glint_plan *plan, hull *hulls, around *eye)
 {
     const glint_geometry *geometry = plan->geometry;

@@ -64,8 +64,8 @@ static glint_key highlights_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-/// Continues a key with the materials' programs for `fields` (one bit each), and the positions of the shapes with
-/// these materials.
+/// Continues a key with the materials' programs for `fields` (one bit each), and with the positions of the shapes
+/// that have these materials.
 static glint_key programs_key(const glint_plan *plan, uint32_t fields, glint_key key)
 {
     for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
@@ -77,12 +77,12 @@ static glint_key cut_outs_key(const glint_plan *plan, glint_key key)
 {
     for (uint32_t i = 0; i < plan->material_count; i++)
         GLINT_KEY_ADD(key, plan->patterns->of[i].cut);
-    GLINT_KEY_ADD(key, plan->geometry->look); // the materials of surfaces
+    GLINT_KEY_ADD(key, plan->geometry->look); // includes the materials of surfaces
     return programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
 }
 
-/// Continues a key with all programs of a material, and with the ambient light, which multiplies their results
-/// instead of the table.
+/// Continues a key with all programs of a material, and with the ambient light, which multiplies the programs'
+/// results instead of the table's values.
 static glint_key own_programs_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     if (!plan->patterns)
@@ -104,7 +104,7 @@ static glint_key material_key(const glint_plan *plan, uint32_t i, glint_key key)
     return own_programs_key(plan, i, key);
 }
 
-/// Returns the key of a material's fields that are read where it has no highlight.
+/// Returns the key of the fields of a material that are read where the material has no highlight.
 static glint_key matte_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     GLINT_KEY_ADD(key, plan->materials[i].diffuse);
@@ -139,7 +139,7 @@ static glint_key background_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-/// Continues a key with everything in `which`.
+/// Continues a key with all inputs whose bit is set in `which`.
 static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key key)
 {
     const glint_geometry *geometry = plan->geometry;
@@ -181,7 +181,7 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
     return output_key(plan, which, key);
 }
 
-/// Returns the key of the light of faces and vertices. Without highlights, it does not include the camera.
+/// Returns the key of the light of faces and vertices. It includes the camera only if there are highlights.
 static glint_key vertex_key(const glint_plan *plan)
 {
     const glint_plan_camera *c = &plan->camera;
@@ -201,7 +201,7 @@ static glint_key vertex_key(const glint_plan *plan)
                       key);
 }
 
-/// Computes the keys of single materials and lights, for tiles that depend only on these.
+/// Computes the keys of each material and each light, for tiles that depend only on some of them.
 static glint_status part_keys(glint_plan *plan, glint_error *error)
 {
     const glint_key none = { 0 };

@@ -17,7 +17,7 @@
 #define BEND_MAX 1e12 ///< largest radius of the lens relative to its focus distance
 
 /// Maps squares around the centre to circles, preserving areas (P. Shirley, K. Chiu, "A Low Distortion Map Between
-/// Disk and Square", 1997): with a = 2 u - 1, b = 2 v - 1, the larger of them is the radius.
+/// Disk and Square", 1997): with a = 2 u - 1, b = 2 v - 1, the one with the larger magnitude is the radius.
 static void round_point(const double square[2], double out[2])
 {
     const double a = 2 * square[0] - 1, b = 2 * square[1] - 1;
@@ -83,7 +83,7 @@ static void fill_points(glint_plan *plan)
 {
     const glint_plan_camera *camera = &plan->camera;
     const uint32_t samples = (uint32_t)plan->desc.samples, block = 1u << glint_sequence_bits(samples);
-    const uint64_t seed = glint_sequence_mix((uint64_t)plan->desc.seed, 0x6c656e73); // a seed for lenses only
+    const uint64_t seed = glint_sequence_mix((uint64_t)plan->desc.seed, 0x6c656e73); // a seed that only lenses use
     for (uint32_t k = 0; k < samples; k++)
         for (uint32_t lane = 0; lane < GLINT_GROUP; lane++) {
             double square[2], point[2];

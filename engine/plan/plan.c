@@ -94,7 +94,7 @@ static void choose_visibility(glint_plan *plan)
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }
 
-/// Returns whether light comes only from the stages shade, with one call per sample, and vertex.
+/// Returns whether all light comes from the stages shade (with one call per sample) and vertex.
 static bool is_local(const glint_plan *plan)
 {
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
@@ -103,7 +103,7 @@ static bool is_local(const glint_plan *plan)
     return !plan->light_groups && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
-/// Returns whether all samples of a tile can be shaded together: their data fit into the tile's memory.
+/// Returns whether all samples of a tile can be shaded together: the data of all samples fit into the tile's memory.
 static bool shades_together(const glint_plan *plan)
 {
     return plan->local && !plan->runs[GLINT_STAGE_VERTEX] && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
@@ -237,7 +237,7 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     return create(scene, desc, NULL, 0, out, error);
 }
 
-/// Returns whether a time has derivatives that the frame lacks.
+/// Returns whether a time has derivatives that the whole frame lacks.
 static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
 {
     bool more = false;
@@ -348,10 +348,11 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
     return plan->stage_count;
 }
 
-/// Width of the border around a region that its pixels depend on: compared pixels, and GLINT_REFINE_SPREAD more
+/// Width in pixels of the border around a region on which the region's pixels depend: the pixels that adaptive
+/// sampling compares, and GLINT_REFINE_SPREAD more
 #define APRON 4
 
-/// Computes the tiles and pixels of a range along one axis of `of` pixels, in tiles of `size`.
+/// Computes the pixels of a range along an axis of `of` pixels, and the tiles of `size` pixels that contain them.
 static void find_range(double from, double count, double of, int size, uint32_t *first, uint32_t *tiles, int *pixel,
                        int *pixels)
 {
@@ -416,7 +417,8 @@ glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
 
 static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
-    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : // derivatives share one number, and light passes
+    // all derivatives share one number, and so do all light passes
+    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass :
                          desc->pass < GLINT_PASS_LIGHT ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT;
     const int options[] = { pass,                desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
@@ -428,7 +430,7 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
         key = glint_overlays_key(plan->overlays, key);
     const bool outlined = desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline;
     if ((outlined || (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1)) && glint_plan_casts_centres(plan))
-        key = glint_key_add_string(key, "centres"); // earlier versions took these passes from the first sample
+        key = glint_key_add_string(key, "centres"); // earlier versions computed these passes from the first sample
     const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
     if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
         key = glint_derivative_key(plan, derivative, key);

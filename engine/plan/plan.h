@@ -28,13 +28,14 @@ typedef struct glint_plan_camera {
     /// Twice the distance from the picture's left and upper edges to the point where `forward` is seen, pixels
     double span[2];
     double pixel_offset;
-    double aperture, focus; ///< of the lens; aperture 0: there is no lens, and the following fields are not read
-    uint32_t blades; ///< 0: it is round
+    double aperture, focus; ///< radius of the lens; focus distance. With aperture 0 there is no lens, and the
+        ///< following fields are not read
+    uint32_t blades; ///< number of blades of the aperture; 0: the aperture is round
     double blade_rotation;
 } glint_plan_camera;
 
-/// The points where the rays of one sample cross the lens, by the lane of their pixel: to the right and up, in world
-/// units.
+/// The points where the rays of one sample cross the lens, by the lane of their pixel: offsets to the right and up,
+/// in world units.
 typedef struct glint_lens_points {
     double at[2][GLINT_GROUP];
 } glint_lens_points;
@@ -42,25 +43,26 @@ typedef struct glint_lens_points {
 /// A light, or one sample of an area light.
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
-    bool joined; ///< another sample of the same area light as the light before it
+    bool joined; ///< whether this is another sample of the same area light as the light before it
     /// For the stage `light`, differs from the light before it only in position; both without samples or a cone
     bool same_but_position;
     bool is_spot;
     glint_spot spot;
-    uint32_t source; ///< index of the light in the scene
+    uint32_t source; ///< index of the described light in the scene
     uint32_t group; ///< its group among the frame's light passes; GLINT_NO_GROUP: none
-    /// Area light: its sample sets, one after another; otherwise NULL
+    /// area light: its sample sets, one after another; otherwise NULL
     const glint_light_sample *light_samples;
-    const glint_light_sample *cap; ///< shadows by caps: describes the whole light; otherwise NULL
-    bool hard; ///< area light: one shadow ray to `position`, its centre, for all samples
-    bool radiant_cap; ///< inside its radius, the light is as strong as on its surface
-    uint32_t sample_set_count; ///< the samples of a pixel use the sets one after the other
-    double position[3]; ///< directional: the unit vector towards the light; area: read where `hard`
+    const glint_light_sample *cap; ///< if its shadows are computed with caps: describes the whole light; otherwise NULL
+    bool hard; ///< area light: all samples share one shadow ray to `position`, the light's centre
+    bool radiant_cap; ///< whether the light is as strong inside its radius as on its surface
+    uint32_t sample_set_count; ///< number of sample sets; the samples of a pixel use the sets in turn
+    double position[3]; ///< directional light: the unit vector towards the light; area light: only read if `hard`
     double scale; ///< see glint_light_args
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
     glint_key key; ///< hash of the data that `light` and `occlude` read for this light
-    glint_key position_key, color_key; ///< `key` and whether it casts shadows; position_key and the colours
+    glint_key position_key, color_key; ///< hash of `key` and of whether the light casts shadows; hash of
+        ///< `position_key` and the colours
 } glint_plan_light;
 
 /// An edge of a polygon: its first corner, and the unit vector perpendicular to it.
@@ -71,13 +73,13 @@ typedef struct glint_plan_edge {
 /// The surface of a visible light.
 typedef struct glint_plan_visible_light {
     bool ball; ///< otherwise flat
-    bool one_sided; ///< flat: shines to the side of the normal
-    double center[3], radius; ///< bounding ball; for a disk or sphere, its own
+    bool one_sided; ///< flat light: shines only to the side of its normal
+    double center[3], radius; ///< bounding ball; for a disk or sphere, its centre and radius
     double normal[3]; ///< flat: unit
     const glint_plan_edge *edges; ///< polygon
     size_t edge_count; ///< 0: a disk
-    double shown[3]; ///< pi times its radiance, like all light in the film
-    uint32_t group; ///< as for a light
+    double shown[3]; ///< brightness: pi times its radiance, like all light in the film
+    uint32_t group; ///< group of the light, as in glint_plan_light
 } glint_plan_visible_light;
 
 /// A background computed by a program.
@@ -85,9 +87,9 @@ typedef struct glint_plan_environment {
     glint_program *program; ///< owned reference
     /// Maps p, a direction, to its position in a picture of all directions; NULL: `program` does not read it
     glint_program *uv;
-    uint32_t row_count; ///< the largest number of rows that one of them needs
-    double pixel; ///< the angle of a pixel; 0: rays are parallel
-    double most; ///< upper bound of its result
+    uint32_t row_count; ///< the largest number of rows that one of the two programs needs
+    double pixel; ///< angle of a pixel, for filtering; 0: rays are parallel
+    double most; ///< upper bound of the program's result
 } glint_plan_environment;
 
 /// Mirror, transmission and absorption of a material.
@@ -95,25 +97,26 @@ typedef struct glint_bounce_material {
     double mirror[3], transmission[3], absorption[3], ior;
     double clear; ///< share of the light that goes straight on; 0 if a program computes it
     bool fresnel, mirrors, transmits; ///< in some channel
-    bool clears; ///< true if the material is translucent
+    bool clears; ///< whether the material is translucent
 } glint_bounce_material;
 
-/// Returns whether a material sends on rays of any kind.
+/// Returns whether a material sends on rays: reflected, refracted or straight through it.
 static inline bool glint_sends_on(const glint_bounce_material *m) { return m->mirrors || m->transmits || m->clears; }
 
 /// Indirect light; all 0: there is none.
 typedef struct glint_plan_indirect {
     uint32_t samples, bounces;
-    uint32_t *light_rows; ///< first row of each light in plan->lights, and one entry after the last
+    uint32_t *light_rows; ///< first row in plan->lights of each light, and one more entry for the end
     uint32_t light_count;
-    double (*rest)[3]; ///< one per material: the ambient light added where paths end
-    double least; ///< a path ends when its weight falls below this share of its first weight
-    bool is_sky; ///< ambient occlusion: paths look only for open sky
+    double (*rest)[3]; ///< one per material: the ambient light that is added where paths end
+    double least; ///< a path ends when its weight falls below this share of its weight at the start
+    bool is_sky; ///< ambient occlusion: paths only test whether the sky is visible
     double distance; ///< ambient occlusion: distance within which surfaces block the sky; may be infinite
 } glint_plan_indirect;
 
-#define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if a material's mirror + transmission is above 1
-#define GLINT_BOUNCE_SPLITS 16 ///< number of surfaces in a chain at which both rays are followed
+#define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if mirror + transmission of a material exceed 1
+/// number of surfaces in a chain at which both the reflected and the refracted ray are followed
+#define GLINT_BOUNCE_SPLITS 16
 /// Limit, in linear light per sample, for the total of weak rays that are not followed
 #define GLINT_BOUNCE_LOSS 0x1p-20
 
@@ -124,27 +127,28 @@ typedef struct glint_text_line {
 
 struct glint_plan {
     glint_render_desc desc;
-    uint32_t shutter_times; ///< light is the mean over this number of times; 0: one instant
+    uint32_t shutter_times; ///< the frame's light is the mean over this number of times; 0: one instant
     /// These times, each rendered separately, owned; NULL: only lights differ, and `lights` has them
     struct glint_plan **times;
-    bool is_base; ///< this plan is the `base` of another one
-    struct glint_plan *base; ///< adaptive sampling: the picture with one sample per pixel that it examines; NULL: off
+    bool is_base; ///< whether this plan is the `base` of another plan
+    struct glint_plan *base; ///< adaptive sampling: the plan of the picture with one sample per pixel, which is
+        ///< examined; NULL: off
     glint_plan_camera camera;
-    glint_lens_points *lens; ///< one per sample; NULL: the camera has no lens
+    glint_lens_points *lens; ///< lens points of each sample; NULL: the camera has no lens
 
     glint_geometry *geometry;
     glint_translucent *translucent; ///< one per material of the geometry; NULL: none is translucent
-    glint_shade_material *materials; ///< in the order of the geometry
+    glint_shade_material *materials; ///< one per material, in the order of the geometry
     uint32_t material_count;
     glint_plan_patterns *patterns; ///< the programs of materials; NULL: there are none
-    bool highlights; ///< some material and some light make a highlight, of the two kinds that follow
-    bool powers, facets; ///< highlights of Phong and Blinn-Phong; highlights of microfacets
+    bool highlights; ///< whether some material and some light make a highlight, of the two kinds that follow
+    bool powers, facets; ///< whether there are highlights of Phong and Blinn-Phong; of microfacets
     glint_plan_light *lights;
-    glint_light_sample *light_samples; ///< of all area lights
-    bool caps; ///< shapes and materials allow shadows by caps
-    uint32_t light_count, shadow_count; ///< number of rows in `lights`; rows of these that cast shadows
-    uint32_t spared_count; ///< rows that cast shadows but need no rays of their own
-    double ambient[3], background[3]; ///< background is 0 if there is an environment
+    glint_light_sample *light_samples; ///< samples of all area lights
+    bool caps; ///< whether shapes and materials allow shadows by caps
+    uint32_t light_count, shadow_count; ///< number of rows in `lights`; number of these rows that cast shadows
+    uint32_t spared_count; ///< number of rows that cast shadows but need no shadow rays of their own
+    double ambient[3], background[3]; ///< ambient light; background colour, 0 if there is an environment
     glint_plan_environment *environment; ///< NULL: the background is plain
     struct {
         bool on;
@@ -155,8 +159,8 @@ struct glint_plan {
         uint32_t material; ///< the innermost medium
         double absorption[3];
     } veil; ///< the eye is inside an absorbing medium
-    glint_plan_visible_light *visible_lights; ///< NULL: no light is visible
-    glint_plan_edge *visible_light_edges; ///< of all of them
+    glint_plan_visible_light *visible_lights; ///< set if the eye is inside an absorbing medium
+    glint_plan_edge *visible_light_edges; ///< edges of all visible lights
     uint32_t visible_light_count;
     size_t visible_light_edge_count;
 
@@ -164,32 +168,35 @@ struct glint_plan {
     struct glint_light_groups *light_groups; ///< NULL: no light pass is requested
 
     glint_bounce_material *bouncing; ///< one per material; NULL: none needs secondary rays
-    bool mirrors, transmits, clears, absorbs; ///< some material does; absorbs: one that transmits
+    bool mirrors, transmits, clears, absorbs; ///< whether some material has a mirror, transmits, is translucent;
+        ///< absorbs: transmits and absorbs light
     glint_plan_indirect indirect;
     glint_media eye_media; ///< the media that contain the eye of a perspective camera
-    bool tints; ///< some light casts shadows, and some material transmits or is translucent
-    bool dims; ///< and some material absorbs transmitted light
+    bool tints; ///< whether some light casts shadows and some material transmits or is translucent, so that shadows
+        ///< may be tinted
+    bool dims; ///< whether, in addition, some material absorbs transmitted light
     double brightest; ///< upper bound of the light along any ray; may be infinite
 
-    glint_overlays *overlays; ///< drawn over the finished picture; NULL: none
+    glint_overlays *overlays; ///< overlays, drawn over the finished picture; NULL: none
 
     bool runs[GLINT_STAGE_COUNT];
-    uint32_t steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages with a step, one bit each
-    uint32_t limits, admits; ///< the stages with these functions
-    bool reads_normals; ///< some stage is likely to read normals
+    uint32_t steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages that have a step then, one bit each
+    uint32_t limits, admits; ///< the stages that have the functions `limit` and `admit`, one bit each
+    bool reads_normals; ///< whether some stage is likely to read normals
     glint_key where; ///< hash of the geometry's positions
     glint_key keys[GLINT_STAGE_COUNT];
-    glint_key *material_keys, *matte_keys; ///< of each material; of the fields read where it has no highlight
+    glint_key *material_keys, *matte_keys; ///< keys of each material, and of only the fields that are read where a
+        ///< material has no highlight
     glint_key all_materials_key, all_lights_key, background_key;
-    glint_key vertex_key; ///< of everything that the light of faces and vertices depends on
-    glint_key output_key; ///< of the conversion to pixel values
+    glint_key vertex_key; ///< key of everything that the light of faces and vertices depends on
+    glint_key output_key; ///< key of the conversion to pixel values
     /// Hash of the view, and of the lights' positions and colours: if it changes, few pixels stay the same
     glint_key setting_key;
-    bool raster; ///< triangles are found by projecting them, not by casting
-    bool needs_index; ///< some stage traverses the BVH
-    bool accumulate; ///< sums over samples or over chunks of lights are needed
-    bool local; ///< light comes only from the stages shade, with one call per sample, and vertex
-    bool together; ///< all samples of a tile are shaded together, without sums
+    bool raster; ///< whether triangles are found by projecting them instead of by casting rays
+    bool needs_index; ///< whether some stage traverses the BVH
+    bool accumulate; ///< whether light must be summed over samples or over chunks of lights
+    bool local; ///< whether all light comes from the stages shade (with one call per sample) and vertex
+    bool together; ///< whether all samples of a tile are shaded together, without sums
 
     glint_stage_info stage_list[GLINT_STAGE_COUNT];
     size_t stage_count;
@@ -198,7 +205,7 @@ struct glint_plan {
     size_t effect_count, effect_capacity;
 };
 
-/// Returns whether anything can add to a term.
+/// Returns whether anything in the scene can contribute to a term of the light.
 static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
 {
     return term < GLINT_TERM_LOCAL ||
@@ -235,18 +242,19 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 /// The passes that are means of the samples.
 #define GLINT_LIGHT_PASSES (((1u << (GLINT_PASS_TRANSMISSION + 1)) - 1) | 1u << GLINT_PASS_ALPHA)
 
-/// Returns whether a frame's plan and the plans of its times differ only in lights, and light adds up in the frame.
+/// Returns whether a frame's plan and the plans of its times differ only in their lights, and whether the frame can
+/// add up the light of all times.
 bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count);
-/// Replaces a plan's lights by the lights of all times, each with its share. Call after shading.
+/// Replaces a plan's lights by the lights of all times, each weighted by its share. Call after shading.
 glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error);
 void glint_plan_free_times(glint_plan **times, size_t count); ///< and the list; NULL: nothing
 
-/// Returns the tone curve of the pixel values that adaptive sampling compares. The base has these values only if
-/// necessary; otherwise they are estimated.
+/// Returns the tone curve of the pixel values that adaptive sampling compares. The base has pixel values only if
+/// necessary; otherwise the comparison estimates them.
 glint_tone_desc glint_plan_compared(const glint_render_desc *desc);
 bool glint_plan_compares_codes(const glint_render_desc *desc);
-/// Returns the description of the base frame with one sample per pixel: the passes and pixel values of `desc`, or the
-/// pixel values that are compared.
+/// Returns the description of the base frame with one sample per pixel: with the passes and pixel values of `desc`,
+/// or with the pixel values that are compared.
 glint_render_desc glint_plan_base(const glint_render_desc *desc);
 
 /// The rendered part of a frame: a rectangle of tiles, and its pixels.
@@ -255,16 +263,16 @@ typedef struct glint_extent {
     int x, y, width, height; ///< pixels
 } glint_extent;
 
-/// Returns the whole frame; for a region, the tiles with a pixel in it or at most two away, because outlines and
-/// adaptive sampling read neighbours.
+/// Returns the whole frame; for a region, the tiles with a pixel in the region or at most two pixels away, because
+/// outlines and adaptive sampling read neighbours.
 glint_extent glint_plan_extent(const glint_render_desc *desc);
 
-/// Computes the position of sample `k` in its pixel: 0 .. 1 across and down.
+/// Computes the position of sample `k` in its pixel: 0 .. 1 to the right and down.
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2]);
 /// Computes the position of a pixel's centre in the same units.
 void glint_plan_centre_offset(const glint_plan *plan, double out[2]);
 /// Returns whether the passes of the pixels' centres (GLINT_CENTRE_PASSES) need their own rays: the first sample is
-/// not there, or goes through a lens.
+/// not at the centre, or goes through a lens.
 bool glint_plan_casts_centres(const glint_plan *plan);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
@@ -274,7 +282,7 @@ glint_overlays_camera glint_plan_camera_of_overlays(const glint_plan_camera *cam
 glint_status glint_plan_find_lens(glint_plan *plan, const glint_camera_desc *desc, glint_error *error);
 /// Writes the lens of sample k for kernels.
 void glint_plan_lens_at(const glint_plan *plan, uint32_t k, glint_lens *out);
-/// Maps a point of the unit square to a lens of radius 1; blades: 0, or at least 3.
+/// Maps a point of the unit square to a lens of radius 1. blades: 0 for a round lens, otherwise at least 3.
 void glint_lens_point(const double square[2], uint32_t blades, double rotation, double out[2]);
 
 /// Fills the materials, and the lights that illuminate surfaces.
@@ -321,18 +329,18 @@ glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
 /// Returns the key of the whole picture up to a stage, including all its times.
 glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage);
 
-/// A copy of a plan with the keys for other positions of its surfaces. The copy owns nothing.
+/// A copy of a plan with the keys that it would have with its surfaces at other positions. The copy owns nothing.
 typedef struct glint_plan_twin {
-    glint_plan plan; ///< all its keys differ, and the keys of its lights
+    glint_plan plan; ///< the copy; its stage keys and the keys of its lights differ from the plan's
 } glint_plan_twin;
 
-/// where: see glint_geometry. Returns false when out of memory. Must be freed in both cases.
+/// where: see glint_geometry. Returns false when out of memory. The twin must be freed in both cases.
 bool glint_plan_twin_make(glint_plan_twin *twin, const glint_plan *plan, glint_key where);
 void glint_plan_twin_free(glint_plan_twin *twin);
 
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
 
-/// Returns the share of light that remains after a distance, with an absorption per unit of length.
+/// Returns the share of light that remains after a distance, in a medium with this absorption per unit of length.
 static inline double glint_plan_transmittance(double absorption, double distance)
 {
     return absorption > 0 ? glint_exp(-absorption * distance) : 1;
