@@ -8,7 +8,7 @@
 #include <float.h>
 
 #define PI 0x1.921fb54442d18p+1
-#define SAMPLES_MAX 0x1p27 ///< most samples of all lights, over all sets
+#define SAMPLES_MAX 0x1p27 ///< most samples of all lights together, over all sets
 
 /// Larger strengths are white in any picture. Products of two strengths below this limit stay finite.
 #define STRENGTH_MAX 1e150
@@ -65,7 +65,7 @@ static void take_planes(glint_shade_material *out, glint_material_desc *d, bool 
     }
 }
 
-/// Sets up Phong and Blinn-Phong for an exponent computed by a program, together with the normalising factor.
+/// Sets up Phong and Blinn-Phong if programs compute the exponent and, with it, the normalising factor.
 static void take_exponents(glint_shade_material *out, const glint_material_desc *d)
 {
     out->planes |= GLINT_PLANE_SHININESS;
@@ -144,9 +144,9 @@ static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
     out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
 }
 
-/// Returns the power of two that scales the largest distance from here to a bounded surface to about 1. Then no
-/// square of a distance overflows a float, and none above 2^-60 of it underflows. Distances near 1 are not scaled,
-/// because the kernels skip a product by 1.
+/// Returns the power of two that scales the largest distance from `position` to a bounded surface to about 1. Then no
+/// square of a distance overflows a float, and no square of a distance above 2^-60 of the largest one underflows.
+/// Distances near 1 are not scaled, because the kernels skip a product by 1.
 static double distance_scale(const double position[3], const glint_geometry_table *geometry)
 {
     double away[3];
@@ -196,7 +196,8 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
         out->coefficients[0] = 0;
         out->coefficients[2] = 1;
         strength = desc->radiance * (PI * (desc->radius * desc->radius));
-    } else if (desc->has_radiance && desc->kind == GLINT_LIGHT_SPHERE) { // weighted by its solid angle over pi
+    // weighted by the solid angle over pi in which a point sees the sphere
+    } else if (desc->has_radiance && desc->kind == GLINT_LIGHT_SPHERE) {
         out->attenuated = true;
         strength = PI * desc->radiance / desc->samples;
     } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in units of the light's size
@@ -228,7 +229,7 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
             scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
 }
 
-/// Fills the materials, and determines their kinds of highlight.
+/// Fills the materials, and determines the kind of highlight of each.
 static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets, glint_error *error)
 {
     const glint_list *list = &plan->geometry->materials;
@@ -265,8 +266,8 @@ static glint_status ensure_capacity(glint_plan *plan, const glint_scene *scene, 
     return plan->lights && plan->light_samples ? GLINT_OK : glint_fail_nomem(error);
 }
 
-/// Returns whether two lights have no samples or cone, and differ only in position, as far as the stage `light` reads
-/// them.
+/// Returns whether two lights have neither samples nor a cone, and the stage `light` reads the same data for both,
+/// except the position.
 static bool is_same_but_position(const glint_plan_light *a, const glint_plan_light *b)
 {
     const bool plain = !a->light_samples && !b->light_samples && !a->is_spot && !b->is_spot;
@@ -274,7 +275,7 @@ static bool is_same_but_position(const glint_plan_light *a, const glint_plan_lig
            memcmp(a->coefficients, b->coefficients, sizeof a->coefficients) == 0;
 }
 
-/// Adds the rows of one light: one, or one per sample. Returns the number of entries used from `light_samples`.
+/// Adds the rows of one light: one row, or one row per sample. Returns the number of entries used from `light_samples`.
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
                         glint_light_sample *light_samples)
 {

@@ -18,10 +18,10 @@ struct glint_plan;
 
 /// Parts of the scene that several stages may read.
 typedef enum glint_scene_part {
-    GLINT_PART_VIEW, ///< camera, picture size, samples
+    GLINT_PART_VIEW, ///< camera, size of the picture, samples
     GLINT_PART_POSITIONS, ///< positions of the surfaces
     GLINT_PART_APPEARANCE, ///< material and two-sidedness of each surface
-    GLINT_PART_PATTERNS, ///< programs of materials, and the shapes' own spaces
+    GLINT_PART_PATTERNS, ///< programs of materials, and the coordinate spaces of the shapes
     GLINT_PART_CUT_OUTS, ///< programs of holes, and materials that are invisible
     GLINT_PART_BUMPS, ///< programs that turn normals
     GLINT_PART_HIGHLIGHTS, ///< kind of highlight of each material
@@ -29,11 +29,12 @@ typedef enum glint_scene_part {
     GLINT_PART_SHADOWS, ///< lights that cast shadows
     GLINT_PART_LIGHT_COLORS,
     GLINT_PART_MATERIALS, ///< reflectances, exponents
-    GLINT_PART_BACKGROUND, ///< a colour or a program, and the brightness of visible lights
-    GLINT_PART_TINTS, ///< transmission of materials, if it tints shadows
+    GLINT_PART_BACKGROUND, ///< background: a colour or a program; brightness of visible lights
+    GLINT_PART_TINTS, ///< transmission of materials, if transmission tints shadows
     GLINT_PART_PASSES,
     GLINT_PART_TONE,
-    GLINT_PART_OWN ///< first of the parts by glint_stage_id: data that only this stage reads, if it runs
+    GLINT_PART_OWN ///< the first part by stage: GLINT_PART_OWN + a glint_stage_id is the data that only this stage
+        ///< reads, if it runs
 } glint_scene_part;
 
 #define GLINT_READS(input) (UINT64_C(1) << GLINT_PART_##input)
@@ -45,18 +46,19 @@ struct glint_sample_walk;
 struct glint_plan_light;
 struct glint_light_args;
 
-/// A part of the walk of a tile. walk: the state of the current sample; NULL where there is none.
+/// One step of a stage in the walk of a tile. walk: the state of the current sample; NULL at times without a current
+/// sample.
 typedef void glint_stage_step(struct glint_tile *tile, const struct glint_tile_frame *frame, struct glint_sample_walk *walk);
 
 /// When the walk of a tile calls the steps of its stages. Stages that take the same time are called in the order of
 /// the list.
 typedef enum glint_stage_time {
-    GLINT_AT_CAST, ///< the nearest objects are known, for the tile's rays or for rays that left a surface
-    GLINT_AT_SURFACE, ///< points and normals are known, likewise
-    GLINT_AT_HITS, ///< the nearest objects are known, for a sample of the eye
-    GLINT_AT_SIGHT, ///< visible lights are known, too; hits do not change any more
-    GLINT_AT_LIT, ///< before the lights, if some point is shaded per sample
-    GLINT_AT_LIGHT, ///< after each light, or the samples of one
+    GLINT_AT_CAST, ///< the nearest objects are known: for the tile's own rays, or for secondary rays
+    GLINT_AT_SURFACE, ///< points and normals are known: for the tile's own rays, or for secondary rays
+    GLINT_AT_HITS, ///< the nearest objects are known for a sample of the primary rays
+    GLINT_AT_SIGHT, ///< visible lights are known, too; hits no longer change
+    GLINT_AT_LIT, ///< before the lights, if some point of the sample is shaded
+    GLINT_AT_LIGHT, ///< after each light or, for an area light, after its samples
     GLINT_AT_SHADED, ///< after each chunk of lights is shaded
     GLINT_AT_REST, ///< after all lights
     GLINT_AT_SUMMED, ///< the sums of the sample are complete
@@ -68,26 +70,28 @@ typedef enum glint_stage_time {
 } glint_stage_time;
 
 typedef struct glint_stage {
-    /// In `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not listed
+    /// name in `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not listed
     const char *name;
     const char *doc; ///< the result in a few words, for `glint explain`
     /// Returns whether the frame needs the stage; the plan's tables are filled
     bool (*called)(const struct glint_plan *plan);
-    uint64_t reads; ///< GLINT_READS and GLINT_READS_OWN: its inputs, besides the results of the stages before it
+    uint64_t reads; ///< inputs of the stage, a set made by GLINT_READS and GLINT_READS_OWN; the results of the stages
+        ///< before it are implied
     glint_key (*own)(const struct glint_plan *plan,
                      glint_key key); ///< continues a key with data that only this stage reads; NULL: none
-    bool aside; ///< the stages after it do not read its result, or read its inputs instead
-    bool per_light; ///< it runs once for each light
-    bool walks; ///< it traverses the BVH
-    bool sums; ///< it adds light to the sums of a sample
-    bool normals; ///< it is likely to read the normals of points
-    bool remote; ///< it adds light, or slopes of light, beyond one call of `shade` per sample
+    bool aside; ///< the stages after it read its inputs instead of its result, or neither
+    bool per_light; ///< whether the stage runs once for each light
+    bool walks; ///< whether the stage traverses the BVH
+    bool sums; ///< whether the stage adds light to the sums of a sample
+    bool normals; ///< whether the stage is likely to read the normals of points
+    bool remote; ///< whether the stage adds light or slopes of light that do not come from the one call of `shade`
+        ///< per sample
 
     glint_stage_step *step[GLINT_TIME_COUNT]; ///< NULL: nothing to do at that time
     /// After the stage light: removes lanes from those above the light's horizon. NULL: none.
     void (*limit)(struct glint_tile *tile, const struct glint_plan *plan, const struct glint_light_args *args);
-    /// After the stage occlude, which read `lit`: adds lanes to `unoccluded`. middle: for the whole light, at
-    /// its centre. NULL: none.
+    /// Called after the stage occlude, which tested the lanes in `lit`: adds lanes to `unoccluded`. middle: the lanes
+    /// are for the whole light, tested at its centre. NULL: none.
     void (*admit)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_plan_light *light, bool middle,
                   const uint16_t *lit, uint16_t *unoccluded);
     /// Computes the normal of a surface that the stage shows where ray i hits nothing. NULL: the stage shows no
@@ -98,8 +102,8 @@ typedef struct glint_stage {
     void (*destroy)(void *memory); ///< accepts NULL
     bool (*fit)(void *memory, const struct glint_plan *plan); ///< grows the memory for a plan; returns false when out
         ///< of memory. NULL: its size is fixed
-    bool sized; ///< its size depends on the plan: it is allocated for each frame
-    bool shared; ///< rays that leave a surface use the memory of the tile
+    bool sized; ///< whether the size of the memory depends on the plan, so that it is allocated for each frame
+    bool shared; ///< whether rays that leave a surface use the same memory as the tile
 } glint_stage;
 
 extern const glint_stage *const glint_stage_table[GLINT_STAGE_COUNT];

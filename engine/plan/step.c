@@ -1,7 +1,8 @@
-/// Estimates the work of a frame that is rendered right after another, from the keys of both, without rendering.
+/// Estimates the work of rendering a frame right after another frame, from the keys of both frames and without
+/// rendering.
 #include "engine/plan/plan.h"
 
-/// Counts the rows of lights whose keys differ from the same rows of the plan before.
+/// Counts the rows of lights whose keys differ from the same rows of the previous plan.
 static double changed_lights(const glint_plan *plan, const glint_plan *before, bool positions)
 {
     double count = 0;
@@ -13,7 +14,7 @@ static double changed_lights(const glint_plan *plan, const glint_plan *before, b
     return count;
 }
 
-/// Returns the work of shading again: 1, or a half if only highlights of materials differ.
+/// Returns the relative work of shading again: 1, or a half if only highlights of materials differ.
 static double shade_work(const glint_plan *plan, const glint_plan *before)
 {
     bool matte = plan->material_count == before->material_count && plan->matte_keys && before->matte_keys, highlights = false;

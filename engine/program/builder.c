@@ -1,4 +1,5 @@
-/// glint_builder: values in static single assignment. Numbers are folded and equal values shared as they come.
+/// glint_builder: values in static single assignment. Operations on numbers are folded and equal values are shared
+/// when they are added.
 #include "engine/program/builder.h"
 
 #include "engine/base/alloc.h"
@@ -54,7 +55,7 @@ static bool same_node(const glint_ssa_node *a, const glint_ssa_node *b)
            memcmp(&a->number, &b->number, sizeof a->number) == 0;
 }
 
-/// Returns the hash slot of the node: the one that holds an equal node, or the free one for a new node.
+/// Returns the hash slot of a node: the slot that holds an equal node, or the free slot for a new one.
 static uint32_t *find_slot(const glint_builder *builder, const glint_ssa_node *node)
 {
     uint32_t at = (uint32_t)hash_node(node) & (builder->slot_count - 1);
@@ -184,7 +185,8 @@ void glint_fold(glint_op op, const glint_texture *texture, const double *operand
         at.out[k] = code.outputs[k] = (uint16_t)k;
         args.result[k] = lanes[k];
     }
-    glint_stages_built[0]->program(&args); // every build of this stage returns the same bits
+    // all instruction sets return the same bits, so the first one in the build will do
+    glint_stages_built[0]->program(&args);
     for (uint32_t k = 0; k < info->results; k++)
         results[k] = lanes[k][0];
 }
@@ -219,7 +221,8 @@ static bool is_the_number(const glint_builder *builder, glint_value value, doubl
            memcmp(&builder->nodes[value].number, &number, sizeof number) == 0;
 }
 
-/// Returns whether the operation returns one of its operands unchanged, bit for bit: *out.
+/// Returns whether the operation always returns one of its operands unchanged, bit for bit, and writes this operand
+/// to *out.
 static bool gives_operand(const glint_builder *builder, glint_op op, const glint_value *operand, glint_value *out)
 {
     double number;
@@ -318,7 +321,7 @@ glint_status glint_builder_finish(glint_builder *builder, const glint_value *out
 
 // ---- Values of a finished program ----
 
-/// Returns the value of an operand: a row, an input or a number. row: the value in each row.
+/// Returns the value of an operand: a row, an input or a number. row: the value that each row holds.
 static glint_status value_in(glint_builder *builder, const glint_program_code *code, const glint_value *row,
                              const glint_value *instead, uint32_t from, glint_value *out, glint_error *error)
 {

@@ -35,7 +35,7 @@ void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t resid
 }
 
 /// Searches backwards from the sink along edges with capacity left. Stores the first edge of each node's path to the
-/// sink. Returns whether the source has one.
+/// sink. Returns whether there is a path from the source.
 static bool find_path(glint_flow *flow)
 {
     uint32_t count = 0;
@@ -52,7 +52,7 @@ static bool find_path(glint_flow *flow)
     return flow->next_edge[GLINT_FLOW_SOURCE];
 }
 
-/// Fills the augmenting path from the source. Returns the added flow.
+/// Fills the augmenting path from the source. Returns the flow that was added.
 static uint32_t fill_path(glint_flow *flow)
 {
     uint32_t residual = UINT32_MAX, node = GLINT_FLOW_SOURCE;

@@ -11,20 +11,20 @@
 #define GLINT_FLOW_ENDLESS 1000000u ///< capacity of edges that no cut may cross
 
 typedef struct glint_flow_edge {
-    uint32_t to, residual; ///< room: the remaining capacity
-    uint32_t next; ///< next edge from the same node, plus 1; 0: none
+    uint32_t to, residual; ///< the node that the edge leads to; residual: its remaining capacity
+    uint32_t next; ///< index of the next edge from the same node, plus 1; 0: none
 } glint_flow_edge;
 
 typedef struct glint_flow {
-    glint_flow_edge *edges; ///< in pairs: each edge is followed by its reverse
+    glint_flow_edge *edges; ///< edges in pairs: each edge is followed by its reverse
     uint32_t edge_count;
-    uint32_t *from; ///< the first edge from each node, plus 1
+    uint32_t *from; ///< index of the first edge from each node, plus 1
     uint32_t *queue;
-    uint32_t *next_edge; ///< the first edge of each node's path to the sink, plus 1; 0: no such path
+    uint32_t *next_edge; ///< index of the first edge of each node's path to the sink, plus 1; 0: there is no such path
     uint32_t node_count;
 } glint_flow;
 
-/// Reserves space for so many nodes and edges. False: out of memory; the caller still destroys the flow.
+/// Reserves space for this number of nodes and edges. False: out of memory; the caller must still destroy the flow.
 bool glint_flow_create(glint_flow *flow, size_t node_count, size_t edge_count);
 void glint_flow_destroy(glint_flow *flow);
 void glint_flow_add(glint_flow *flow, uint32_t from, uint32_t to, uint32_t residual);

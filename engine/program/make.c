@@ -7,15 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_THAT_FIT 32u ///< rows of 2 KB: about the first-level cache; with more rows another order is tried
+/// rows of 2 KB that fit into the first-level cache, about; if more are needed, another order of operations is tried
+#define ROWS_THAT_FIT 32u
 #define UNUSED UINT32_MAX
 
 typedef struct maker {
     uint32_t count;
     glint_ssa_node *nodes; ///< a copy of the builder's nodes, some of them fused
-    uint32_t *uses; ///< number of readers of each value; 0: the result is not read
-    bool *needed; ///< by first result: an output depends on the operation
-    uint32_t *order, length; ///< first results of operations, in the order of execution
+    uint32_t *uses; ///< number of readers of each value; 0: nothing reads it
+    bool *needed; ///< for each operation, by its first result: whether an output depends on it
+    uint32_t *order, length; ///< the operations in the order of their execution, each by its first result
     uint32_t *last; ///< position in `order` of each value's last reader; UNUSED: none; length: it is an output
     uint16_t *row;
     uint32_t rows;
@@ -200,7 +201,7 @@ static void find_last_uses(maker *m, const glint_value *outputs, size_t count)
 
 typedef struct free_rows {
     uint64_t taken[GLINT_PROGRAM_ROWS_MAX / 64];
-    uint32_t most; ///< the most rows in use at once; GLINT_PROGRAM_ROWS_MAX + 1: too few rows
+    uint32_t most; ///< largest number of rows in use at once; GLINT_PROGRAM_ROWS_MAX + 1: there are too few rows
 } free_rows;
 
 static uint16_t take_row(free_rows *rows)
@@ -219,8 +220,8 @@ static uint16_t take_row(free_rows *rows)
 
 static void give_row(free_rows *rows, uint16_t row) { rows->taken[row / 64] &= ~((uint64_t)1 << row % 64); }
 
-/// Assigns a row to each result. A result may reuse the row of an operand that has no later reader: kernels read before
-/// they write.
+/// Assigns a row to each result. A result may reuse the row of an operand that has no later reader, because kernels
+/// read operands before they write results.
 static void give_out_rows(maker *m, const glint_value *outputs, size_t count)
 {
     free_rows rows = { { 0 }, 0 };

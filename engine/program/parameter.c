@@ -44,7 +44,7 @@ static glint_status copy_node(const glint_builder *from, uint32_t i, bool open, 
         return glint_builder_intern(to, GLINT_SSA_PARAMETER, node->operand[0], node->number, &map[i], error);
     if (!glint_ssa_is_op(node))
         return glint_builder_number(to, node->number, &map[i], error);
-    if (node->part > 0) // added together with the first result
+    if (node->part > 0) // already added, together with the first result
         return GLINT_OK;
     const glint_op_info *info = glint_op_info_of((glint_op)node->op);
     const bool picture = node->op == GLINT_OP_TEXEL || node->op == GLINT_OP_TEXEL_SLOPE;

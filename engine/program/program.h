@@ -11,12 +11,13 @@ struct glint_program {
     glint_program_kind kind;
     glint_program_code code; ///< the program owns its arrays
     uint32_t number_count, texture_count;
-    uint32_t inputs; ///< a bit for each glint_input that is read
-    uint32_t slopes; ///< a bit for each glint_input whose slope is read
-    glint_key structure; ///< hash of the operations, their operands and the textures
-    glint_key numbers; ///< hash of only the numbers
+    uint32_t inputs; ///< the inputs that the program reads, one bit each
+    uint32_t slopes; ///< the inputs whose slopes the program reads, one bit each
+    glint_key structure; ///< hash of the operations, of their operands and of the textures
+    glint_key numbers; ///< hash of only the program's numbers
     glint_texture **textures; ///< retained
-    glint_program **tangents; ///< GLINT_PARAMETERS_MAX of them, owned; NULL where nothing changes; NULL: nothing does
+    glint_program **tangents; ///< one for each of GLINT_PARAMETERS_MAX parameters, owned; an entry is NULL if no
+        ///< output depends on the parameter. NULL: no number depends on parameters
     _Atomic uint32_t references;
 };
 
@@ -31,14 +32,16 @@ glint_key glint_texture_key(const glint_texture *texture);
 glint_status glint_program_slope(const glint_program *program, const glint_input *inputs, size_t count,
                                  glint_program **out, glint_error *error);
 
-/// The meaning of one number of a gradient: the derivative of a channel of light by an input.
+/// The meaning of one number of a gradient: the derivative of one channel of light by one input.
 typedef struct glint_gradient_entry {
     uint32_t channel, input;
 } glint_gradient_entry;
 
 #define GLINT_GRADIENT_MAX (3 * GLINT_INPUT_COUNT)
 #define GLINT_GRADIENT_PART 8
-#define GLINT_FORWARD_MAX 2 ///< derivatives; for more of them a gradient is faster, because it runs only once
+/// largest number of derivatives in forward mode; for more derivatives a gradient is faster, because it runs only
+/// once
+#define GLINT_FORWARD_MAX 2
 _Static_assert(GLINT_GRADIENT_MAX <= GLINT_CODE_OUTPUTS_MAX, "a program may give all slopes");
 
 /// The derivatives of a shader's light, diffuse and specular, by its inputs. Slopes that are 0 everywhere are not
@@ -46,15 +49,16 @@ _Static_assert(GLINT_GRADIENT_MAX <= GLINT_CODE_OUTPUTS_MAX, "a program may give
 typedef struct glint_gradient {
     uint32_t count;
     glint_gradient_entry of[GLINT_GRADIENT_MAX];
-    uint32_t each; ///< slopes for each program: all of them, or GLINT_GRADIENT_PART if one program cannot hold all
+    uint32_t each; ///< number of slopes that each program computes: all slopes, or GLINT_GRADIENT_PART if one program
+        ///< cannot hold all
     glint_program *programs[(GLINT_GRADIENT_MAX + GLINT_GRADIENT_PART - 1) / GLINT_GRADIENT_PART]; ///< owned, or NULL
     /// Owned: one program for each derivative, see glint_shader_forward; NULL: use the gradient. Set for each frame,
     /// not by glint_shader_gradient
     glint_program *forward[GLINT_FORWARD_MAX];
 } glint_gradient;
 
-/// Makes a program of the derivatives of the channels of a shader's light, from the slopes of `inputs` (a bit each):
-/// forward mode, one sweep for all channels. The result may not be finite where a zero slope meets an infinite
+/// Makes a program of the derivatives of the channels of a shader's light, from the slopes of `inputs` (one bit
+/// each): forward mode, one sweep for all channels. The result may not be finite where a zero slope meets an infinite
 /// derivative, such as the root of 0; the gradient gives the right value there. *out is NULL if the program would be
 /// too long.
 glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, glint_program **out, glint_error *error);

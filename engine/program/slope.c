@@ -43,7 +43,7 @@ static void finish(glint_slope_maker *s, const glint_input *inputs, size_t count
         s->status = glint_program_make(s->builder, outputs, count, out, s->error);
 }
 
-/// Begins with a program's values. `inputs`: the inputs to derive by, a bit each.
+/// Begins with a program's values. inputs: the inputs to derive by, one bit each.
 static void begin(glint_slope_maker *s, const glint_program *program, uint32_t inputs, glint_value outputs[GLINT_PROGRAM_OUTPUTS_MAX])
 {
     s->status = glint_builder_create(program->kind, &s->builder, s->error);
@@ -89,8 +89,8 @@ glint_status glint_program_slope(const glint_program *program, const glint_input
 
 // ---- Shaders ------------------------------------------------------------------------------------------------------
 
-/// Returns 1 where an output is used as it is, and 0 where it is clamped to the range from the smallest to the largest
-/// number.
+/// Returns 1 where the value of an output is used, and 0 where the output is clamped to the range from the smallest
+/// to the largest number.
 static glint_value is_within(glint_slope_maker *s, glint_value output)
 {
     const glint_value least = glint_slope_number(s, 0x1p-1074), most = glint_slope_number(s, GLINT_REFLECTANCE_MAX);
@@ -115,7 +115,7 @@ static void list_channel(glint_slope_maker *s, const glint_value *outputs, uint3
     }
 }
 
-/// Uses one program for all slopes if it can hold them, because it computes their common values once.
+/// Makes one program for all slopes if it can hold them, because one program computes their common values only once.
 static glint_status make_gradient(const glint_builder *builder, const glint_value *values, glint_gradient *out, glint_error *error)
 {
     glint_status status = glint_program_make(builder, values, out->count, &out->programs[0], error);
@@ -165,7 +165,8 @@ static glint_value add_share(glint_slope_maker *s, glint_value sum, glint_value 
 }
 
 /// Returns the slope of an operation's result from the slopes of its operands. A choice has the slope of the chosen
-/// operand; any other operation has the sum of its partial derivatives times the slopes.
+/// operand; the slope of any other operation is the sum of its partial derivatives, each times the slope of its
+/// operand.
 static glint_value find_slope(glint_slope_maker *s, glint_value i, const glint_value *slope)
 {
     const glint_ssa_node node = s->builder->nodes[i];
@@ -239,8 +240,7 @@ glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, 
 
 // ---- Derivatives by parameters ------------------------------------------------------------------------------------
 
-/// Marks the values that depend on parameter number `parameter`. Parameters have the same numbers in the copy as in the
-/// builder.
+/// Marks the values that depend on parameter number `parameter`. The copy numbers its parameters like the builder.
 static void find_changing(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
     find_varying(s, 0);
@@ -253,7 +253,7 @@ static void find_changing(glint_slope_maker *s, const glint_builder *builder, si
     }
 }
 
-/// Returns the slope of an output by the parameter: the sum over all changing numbers.
+/// Returns the slope of an output by the parameter: a sum over all numbers that depend on the parameter.
 static glint_value gather(glint_slope_maker *s, const glint_builder *builder, size_t parameter)
 {
     glint_value sum = glint_slope_number(s, 0);

@@ -9,9 +9,9 @@
 typedef struct glint_slope_maker {
     glint_builder *builder;
     uint32_t count; ///< values of the program; the values of its derivatives follow
-    glint_value *given; ///< the adjoint of each value so far; GLINT_SLOPE_NOTHING: none yet
-    bool *varies; ///< whether the value depends on an input to derive by
-    glint_status status; ///< of the first failure; values made after it are meaningless
+    glint_value *given; ///< the adjoint of each value as summed so far; GLINT_SLOPE_NOTHING: nothing added yet
+    bool *varies; ///< for each value, whether it depends on an input to derive by
+    glint_status status; ///< status of the first failure; values made after it are meaningless
     glint_error *error;
 } glint_slope_maker;
 

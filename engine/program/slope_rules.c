@@ -221,8 +221,8 @@ static void pass_on(glint_slope_maker *s, const rule_case *x)
 
 // ---- Operations with kernels for their slopes ---------------------------------------------------------------------
 
-/// Passes on the adjoint of one result of such an operation. The derivatives by `count` operands start at `slope`,
-/// `apart` values from one to the next.
+/// Passes on the adjoint of one result of an operation that has a kernel for its slopes. The derivatives by `count`
+/// operands start at `slope`, `apart` values from one to the next.
 static void pass_slopes(glint_slope_maker *s, const glint_ssa_node *node, glint_value g, const glint_value *slope, int count,
                         int apart)
 {

@@ -7,21 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-// In tenths of a nanosecond per point.
-#define COST_OF_NUMBER 8u ///< of a cached double
-#define COST_OF_TRUTH 1u ///< of a cached bit
-#define COST_MAX 160u ///< above it nothing is cached
+// Costs in tenths of a nanosecond per point.
+#define COST_OF_NUMBER 8u ///< cost of a cached double
+#define COST_OF_TRUTH 1u ///< cost of a cached bit
+#define COST_MAX 160u ///< above this cost nothing is cached
 
-#define NO_VALUE UINT32_MAX ///< the operand is a number
+#define NO_VALUE UINT32_MAX ///< marks an operand that is a number
 
 /// A program's values: its inputs, then the results of its instructions.
 typedef struct values {
     const glint_program_code *code;
     uint32_t count;
-    uint32_t *operand; ///< GLINT_OPERANDS_MAX for each instruction
-    uint32_t *first; ///< the first result of each instruction
-    bool *dynamic; ///< instructions that depend on the changed numbers
-    bool *second; ///< instructions that the second part runs
+    uint32_t *operand; ///< values of the operands, GLINT_OPERANDS_MAX for each instruction
+    uint32_t *first; ///< index of the first result of each instruction
+    bool *dynamic; ///< the instructions that depend on the changed numbers
+    bool *second; ///< the instructions that the second part runs
     uint32_t *maker; ///< the instruction that computes each value; NO_VALUE for an input
     uint32_t *last; ///< the last reader of each value in the part being written
     uint16_t *slot; ///< row or input of each value in the part being written
@@ -62,7 +62,7 @@ static bool begin(values *v, const glint_program_code *code)
 
 // ---- The graph ----------------------------------------------------------------------------------------------------
 
-/// Returns the value that is read; NO_VALUE: a number. holder: the value in each row.
+/// Returns the value that an operand reads; NO_VALUE: a number. holder: the value that each row holds.
 static uint32_t value_at(const uint32_t *holder, uint32_t slot)
 {
     if (slot >= GLINT_ROW_NUMBER)
@@ -158,8 +158,8 @@ static void add_reader(values *v, uint32_t value, uint32_t reader)
         glint_flow_add(&v->flow, node_of_value(v, value), reader, GLINT_FLOW_ENDLESS);
 }
 
-/// Builds the graph. The sink's side is the instructions that the second part runs and the values that it reads.
-/// Returns the cost of all instructions that do not depend on the changed numbers.
+/// Builds the graph. The sink's side consists of the instructions that the second part runs and the values that it
+/// reads. Returns the cost of all instructions that do not depend on the changed numbers.
 static uint32_t make_graph(values *v, const uint32_t *outputs)
 {
     uint32_t rest = 0;
@@ -235,7 +235,8 @@ static uint16_t take_row(bool *taken, uint32_t *most)
     return (uint16_t)row;
 }
 
-/// Assigns rows to an instruction's results, after freeing the rows of operands that it is the last to read.
+/// Assigns rows to an instruction's results. First frees the rows of operands that this instruction is the last to
+/// read.
 static void place_results(values *v, uint32_t i, glint_instruction *to, bool *taken, uint32_t *most)
 {
     for (uint32_t k = 0; k < to->operands; k++) {
@@ -250,8 +251,8 @@ static void place_results(values *v, uint32_t i, glint_instruction *to, bool *ta
             taken[to->out[k]] = false;
 }
 
-/// Writes the part that runs the `wanted` instructions; its inputs are placed already. The part may need too many rows.
-/// False: out of memory.
+/// Writes the part that runs the `wanted` instructions; its inputs already have their rows. The part may turn out to
+/// need too many rows. False: out of memory.
 static bool write_part(values *v, bool *wanted, const uint32_t *outputs, uint32_t count, glint_program_code *part)
 {
     bool taken[GLINT_PROGRAM_ROWS_MAX] = { false };

@@ -8,14 +8,15 @@
 typedef struct glint_split {
     glint_program_code first; ///< its outputs are cached for the second part
     glint_program_code second; ///< its inputs are the outputs of the first part, in the same order
-    uint32_t truths; ///< a bit for each cached value: it is 0 or 1, unless computed from NaN
-    uint32_t cost; ///< of the cached values and of instructions that both parts run, tenths of a ns per point
+    uint32_t truths; ///< a bit for each cached value, set if the value is always 0 or 1 (unless computed from NaN)
+    uint32_t cost; ///< cost of the cached values and of the instructions that both parts run, tenths of a nanosecond
+        ///< per point
     uint32_t saved; ///< cost of all instructions that the changed numbers do not affect, in the same unit
 } glint_split;
 
 /// Puts everything that depends on the `changed` numbers (one flag per number) into the second part. A minimum cut
-/// decides which other values are cached and which are computed again: it takes the least time, and among equal cuts
-/// the least is computed again.
+/// decides which other values are cached and which are computed again: the cut takes the least time and, among cuts
+/// with equal time, computes the fewest values again.
 ///
 /// False: out of memory. *out is NULL if there is nothing to cache, or too much.
 bool glint_split_create(const glint_program *program, const bool *changed, glint_split **out);

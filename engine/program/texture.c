@@ -18,7 +18,7 @@ struct glint_texture {
     glint_texture_table table;
     glint_texture_level levels[LEVELS_MAX];
     glint_key key;
-    glint_texture *owner; ///< retained: the texture that owns the texels; NULL: this one
+    glint_texture *owner; ///< the texture that owns the texels, retained; NULL: this texture owns them
     _Atomic uint32_t references;
 };
 
@@ -90,8 +90,8 @@ static bool fill_first(glint_texture *texture, const glint_png *png, bool linear
     return to != NULL;
 }
 
-/// Adds the next mipmap level. Each texel is the mean of the four that it covers; at the end of an odd side the last
-/// one counts twice.
+/// Adds the next mipmap level. Each texel is the mean of the four texels that it covers. At the end of a side with an
+/// odd length, the last texel counts twice.
 static bool add_half(glint_texture *texture)
 {
     const glint_texture_level from = texture->levels[texture->table.level_count - 1];

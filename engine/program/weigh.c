@@ -3,7 +3,7 @@
 #include "engine/base/maker.h"
 #include "engine/program/builder.h"
 
-#define LEAST_SHARE 0x1p-100 ///< a surface with a smaller share is invisible; divisions by the share use at least this
+#define LEAST_SHARE 0x1p-100 ///< a surface with a smaller share is invisible; divisors are at least this
 
 static glint_maker begin(glint_program_kind kind, glint_error *error)
 {
