@@ -319,10 +319,10 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
 glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Returns whether a light is visible, and writes its brightness: pi times its radiance.
 ///
-/// With `radiance` L: pi L color. With `intensity` I: color I A(D), where A is its fall-off and D the radius of a
-/// disk of its area (for a sphere its own radius). So a light that falls off as 1/(c2 d^2) looks as bright as its
-/// distant illumination requires, I/(c2 area); a light that does not fall off looks as bright as a white surface that
-/// it illuminates.
+/// With `radiance` L: pi L color. With `intensity` I: color I A(D), where A is the light's fall-off and D the radius of
+/// a disk with the light's area (for a sphere, the sphere's radius). So a light that falls off as 1/(c2 d^2) looks as
+/// bright as its distant illumination requires, I/(c2 area); a light that does not fall off looks as bright as a white
+/// surface that it illuminates.
 bool glint_light_shows(const glint_light_desc *desc, double shown[3]);
 
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error);

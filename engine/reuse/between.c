@@ -10,7 +10,7 @@ static double loosened(double radius, double distance) { return radius * (1 + 1e
 
 static double length_of(const double v[3]) { return sqrt(vec_dot(v, v)); }
 
-/// Computes the sides of a tile in half pixels, relative to where `forward` is seen, to the right (x) and up (y).
+/// Computes the sides of a tile in half pixels, to the right (x) and up (y) from the point where `forward` is seen.
 static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, double x[2], double y[2])
 {
     const double width = plan->desc.width, height = plan->desc.height;
@@ -50,8 +50,8 @@ static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, si
     }
 }
 
-/// Returns the largest distance between a lens's rays and the pinhole's rays near a ball, whose centre is at depth
-/// `along`.
+/// Returns the largest distance between the rays of a lens and the rays of a pinhole near a ball, whose centre is at
+/// depth `along`.
 static double margin(const glint_plan *plan, double along, double radius)
 {
     const glint_plan_camera *camera = &plan->camera;
@@ -85,8 +85,8 @@ bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t co
 /// The emitting part of a light.
 typedef struct source {
     bool directional;
-    double to[3]; ///< the centre; for a directional light, the direction
-    double radius; ///< of a ball around the light
+    double to[3]; ///< centre of the light; for a directional light, its direction
+    double radius; ///< radius of a ball around the light
 } source;
 
 static source source_of(const glint_plan_light *light)
@@ -120,12 +120,13 @@ static bool is_far_off(const source *light, const glint_point_box *box, const gl
     return length_of(across) > loosened(ball->radius + wide, far);
 }
 
-/// The segments from a body with eight corners to a light: along each of these normals, all segments lie between two
-/// heights.
+/// The segments from the eight corners of a body to a light, bounded by slabs: along each of these normals, all
+/// segments lie between two heights.
 typedef struct slabs {
     int count;
-    double origin[3]; ///< origin of the heights: the light's centre, or a corner if the light is parallel
-    double size; ///< distances of the corners from this origin, plus its distance from the world's origin
+    double origin[3]; ///< origin of the heights: the light's centre or, for parallel light, a corner
+    double size; ///< bound of the coordinates, for rounding: the corners' distances from this origin, plus the
+        ///< origin's distance from the world's origin
     double normal[18][3], length[18], low[18], high[18];
 } slabs;
 
@@ -133,8 +134,8 @@ typedef struct slabs {
 static int edge_begin(int edge) { return edge / 4 == 0 ? 2 * (edge % 4) : edge / 4 == 1 ? edge % 2 + edge % 4 / 2 * 4 : edge % 4; }
 static int edge_end(int edge) { return edge_begin(edge) + (1 << edge / 4); }
 
-/// Adds a slab. corner: relative to the origin. away: the light is parallel and the normal not perpendicular to it,
-/// so that the slab is unbounded on one side.
+/// Adds a slab. corner: the corners relative to the origin. away: the light is parallel and not perpendicular to the
+/// normal, so that the slab is unbounded on one side.
 static void add_slab(slabs *s, double (*corner)[3], const source *light, const double normal[3], bool away)
 {
     const double length = length_of(normal), ahead = away ? vec_dot(normal, light->to) : 0;
@@ -150,7 +151,7 @@ static void add_slab(slabs *s, double (*corner)[3], const source *light, const d
     s->high[s->count++] = ahead > 0 ? HUGE_VAL : high;
 }
 
-/// Computes the slabs of the body's faces, and of its edges with the light.
+/// Computes the slabs of the body's faces, and the slabs of the planes through one of its edges and the light.
 static void find_slabs(slabs *s, double (*corner)[3], const source *light)
 {
     s->count = 0;
@@ -200,8 +201,8 @@ static void find_box_corners(const glint_point_box *box, double corner[8][3])
             corner[k][c] = (k >> c & 1 ? box->upper : box->lower)[c];
 }
 
-/// Computes the corners of the part of a tile's pyramid or bar at the depths of the box. It is much smaller than the
-/// box if the box is deep and oblique to the axes.
+/// Computes the corners of the part of a tile's pyramid or bar at the depths of the box. This part is much smaller
+/// than the box if the box is deep and oblique to the axes.
 static void find_beam_corners(const glint_plan *plan, const glint_point_box *box, uint32_t column, uint32_t row,
                               double corner[8][3])
 {
@@ -228,7 +229,7 @@ bool glint_may_shade(const glint_plan *plan, const glint_plan_light *light, cons
 {
     const source from = source_of(light);
     const bool has_points = box->lower[0] <= box->upper[0] && box->lower[1] <= box->upper[1] && box->lower[2] <= box->upper[2];
-    // rays of a lens leave the tile's pyramid
+    // the rays of a lens are not limited to the tile's pyramid
     const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2;
     slabs around[2];
     bool found = false;

@@ -8,7 +8,7 @@
 
 #include "engine/plan/plan.h"
 
-/// A ball around a changed primitive, before or after the change.
+/// A ball around a changed primitive, either before or after the change.
 typedef struct glint_ball {
     double center[3], radius;
 } glint_ball;

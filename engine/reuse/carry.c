@@ -1,6 +1,7 @@
 /// Retains results after a change of geometry. If a few primitives have moved, appeared or disappeared, a tile that
-/// shows none of them, before or after, retains its hits, and a light retains its shadows in a tile if none of them
-/// crosses the segments to the tile's points. Such results get the new plan's keys before the frame begins.
+/// shows none of these primitives, before or after the change, retains its hits. A light retains its shadows in a
+/// tile if none of these primitives crosses the segments from the light to the tile's points. Such results get the
+/// new plan's keys before the frame begins.
 #include "engine/base/vec.h"
 #include "engine/reuse/between.h"
 #include "engine/reuse/reuse.h"
@@ -9,19 +10,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CARRY_PRIMS 16384u ///< in larger scenes, after too many changes, some frames do not search for changes
-#define CARRY_AT_ONCE 131072u ///< in larger scenes, the first frame does not record positions, because a single
-    ///< picture would not use them
-#define CARRY_CHANGES 64 ///< with more changes, no results are retained
-#define CARRY_PAUSE_MAX 16 ///< longest pause, in frames
+/// in scenes with more primitives, frames after too many changes pause the search for changes
+#define CARRY_PRIMS 16384u
+/// in scenes with more primitives, the first frame does not record positions, because the positions are of no use if
+/// only one picture is rendered
+#define CARRY_AT_ONCE 131072u
+#define CARRY_CHANGES 64 ///< if more primitives have changed, no results are retained
+#define CARRY_PAUSE_MAX 16 ///< longest pause of the search for changes, in frames
 
 typedef struct carry {
     glint_reuse *reuse;
     const glint_plan *plan;
-    const glint_plan *before; ///< the same plan with the positions of the last frame, for its keys
-    glint_ball balls[2 * CARRY_CHANGES]; ///< around all changed primitives, before and after
+    const glint_plan *before; ///< the same plan, but with the positions of the last frame, for its keys
+    glint_ball balls[2 * CARRY_CHANGES]; ///< balls around all changed primitives, before and after the change
     uint32_t ball_count;
-    const uint32_t *moved_to; ///< the new index of each primitive of the last frame; NULL: unchanged
+    const uint32_t *moved_to; ///< the new index of each primitive of the last frame; NULL: all indices are unchanged
     glint_image *const *images;
     uint32_t image_count;
 } carry;
@@ -89,7 +92,7 @@ static void renew(glint_key *key, glint_key before, glint_key now)
         *key = now;
 }
 
-/// Returns the new index of a primitive; GLINT_MISS, and the values of lanes outside the picture, stay as they are.
+/// Returns the new index of a primitive. GLINT_MISS and the values of lanes outside the picture do not change.
 static uint32_t moved(const carry *c, uint32_t index)
 {
     return c->moved_to && index < c->reuse->position_count ? c->moved_to[index] : index;
@@ -120,7 +123,8 @@ static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed, ui
         const glint_plan_light *was = &c->before->lights[i], *is = &c->plan->lights[i];
         glint_cached_light *light = &tile->lights[i];
         const bool ordered =
-            is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
+            // visible shares are multiplied in the order of the primitives, and each product is rounded
+            is->cap && c->moved_to;
         const bool clear = boxed && !ordered && !glint_may_shade(c->plan, is, &tile->box, c->balls, c->ball_count, column, row);
         const bool open = !is->shadows || clear;
         renew(&light->light, was->key, is->key);
@@ -167,7 +171,7 @@ static void carry_all(const carry *c)
 }
 
 /// Computes the new index of each primitive of the last frame. Returns false when out of memory. *moved_to is NULL if
-/// none moved.
+/// all indices are unchanged.
 static bool find_moves(const glint_cached_position *was, const glint_cached_position *is, uint32_t count,
                        uint32_t **moved_to)
 {
@@ -202,7 +206,7 @@ static bool carry_changes(carry *c, const glint_cached_position *is, uint32_t co
     return true;
 }
 
-/// Returns whether to record the positions of this frame: with many primitives, not in every frame if most of them
+/// Returns whether to record the positions of this frame. With many primitives, frames are skipped if most primitives
 /// move.
 static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
 {
@@ -229,14 +233,14 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
 {
     const glint_geometry *geometry = plan->geometry;
     const uint32_t count = geometry->id_count, lights = plan->light_count;
-    const bool plain = reuse->plain == geometry->index->plain; // otherwise the same positions may have another order
+    const bool plain = reuse->plain == geometry->index->plain; // otherwise equal positions may be in another order
     if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
     glint_cached_position *positions = is_worth_finding(reuse, count) ? find_positions(geometry, count) : NULL;
     const bool comparable = plain && reuse->positions && positions && reuse->position_count == count &&
                             reuse->tile_count > 0 &&
-                            reuse->scale == geometry->table.scale && // with another scale, other numbers underflow
+                            reuse->scale == geometry->table.scale && // with another scale, other values underflow
                             reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
     if (comparable && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
         if (carry_changes(&c, positions, count))

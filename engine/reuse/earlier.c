@@ -1,7 +1,7 @@
-/// Caches results of frames before the last. The keys of recent frames are remembered. If a key recurs, others
-/// probably will, too. Its results are then cached from now on, and set aside instead of overwritten when the key
-/// changes. Whole tiles are set aside if the hits' key changes (alternating cameras), otherwise single lights (a lamp
-/// moving in a circle).
+/// Caches results of frames before the last. The keys of recent frames are remembered. If a key recurs, the following
+/// keys will probably recur, too. From then on results are cached, and when the key changes they are set aside
+/// instead of overwritten. Whole tiles are set aside if the hits' key changes (alternating cameras), otherwise single
+/// lights (a lamp moving in a circle).
 ///
 /// All results of one kind take the same time and memory, so the least recently used one is evicted.
 #include "engine/reuse/reuse.h"
@@ -9,13 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// With fewer primitives for each row of a light, computing it takes no longer than reading a stored result.
+/// With fewer primitives than this for each row of a light, computing the light takes no longer than reading a stored
+/// result.
 #define EARLIER_PRIMS 128
 
 static const glint_key none = { 0 };
 
-/// Returns how many results can be set aside, at most `most`: they may take half of the budget that whole pictures
-/// leave.
+/// Returns how many results can be set aside, at most `most`. They may take half of the budget that is left by whole
+/// pictures.
 static size_t slots_for(const glint_reuse *reuse, size_t bytes, size_t most)
 {
     const size_t fits = (reuse->budget - reuse->pictures) / 2 / bytes;
@@ -40,7 +41,8 @@ static size_t light_bytes(const glint_reuse *reuse)
     return reuse->tile_count * (sizeof(glint_cached_light) + 3 * samples * sizeof(float) + samples / 4);
 }
 
-/// Returns the set whose row has the key; for an all-zero key, a set to overwrite. `sets` sets are in use. -1: none.
+/// Returns the index of the set whose results have the key or, for an all-zero key, of a set to overwrite. sets: the
+/// number of sets in use. -1: there is no such set.
 static int find_set(const glint_earlier *e, int sets, uint32_t row, glint_key key)
 {
     int oldest = -1;
@@ -63,7 +65,7 @@ static bool make_set(glint_reuse *reuse, glint_earlier_set *set)
     return set->lights != NULL;
 }
 
-/// Exchanges the results of one light in all tiles with a set's results. Returns false when out of memory.
+/// Swaps the results of one light in all tiles with the results in a set. Returns false when out of memory.
 static bool exchange_light(glint_reuse *reuse, int s, uint32_t row)
 {
     glint_earlier_set *set = &reuse->earlier->sets[s];
@@ -108,8 +110,8 @@ static void forget_lights(glint_reuse *reuse)
     memset(reuse->light_recurs, 0, sizeof reuse->light_recurs);
 }
 
-/// Returns whether the results of a light are expensive enough to be worth their memory. The samples of an area
-/// light, a row each, share one search for occluders: the more samples, the cheaper each is.
+/// Returns whether the results of a light are expensive enough to be worth their memory. Each sample of an area light
+/// has its own row, but all samples share one search for occluders, so more samples make each row cheaper.
 static bool is_dear(const glint_plan *plan, uint32_t row)
 {
     size_t rows = 0;

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/// Blocks are cut from chunks of large pages, so that many tiles share few pages.
+/// Blocks are cut from large chunks of memory, so that many tiles share few pages.
 #define CHUNK_BYTES ((size_t)4 << 20)
 #define BLOCK_ALIGN 64
 
@@ -104,7 +104,7 @@ bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *pla
     return false;
 }
 
-/// Returns whether a material's highlight may be above 0 in the tile.
+/// Returns whether the highlight of a material may be above 0 in the tile.
 static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan, uint32_t index)
 {
     const glint_shade_material *material = &plan->materials[index];
@@ -117,7 +117,7 @@ static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, cons
     return false;
 }
 
-/// Continues a key with the materials that the tile shows.
+/// Continues a key with the materials that are visible in the tile.
 static glint_key materials_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan, glint_key key)
 {
     if (tile->shown_count > GLINT_SHOWN_MAX)
@@ -186,7 +186,8 @@ static bool add_chunk(glint_reuse *reuse, size_t bytes)
     return true;
 }
 
-/// Returns a block of uninitialised memory within the budget, or NULL. It lasts until everything is cleared.
+/// Returns a block of uninitialised memory within the budget, or NULL. The block is valid until the whole cache is
+/// cleared.
 static void *hold(glint_reuse *reuse, size_t bytes)
 {
     void *block = NULL;

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Costs of the programs' inputs, in tenths of a nanosecond per sample.
-#define COST_OF_POINTS 20u ///< points of spheres and planes
-#define COST_OF_SURFACES 40u ///< with other shapes, whose normals are computed with their points
+// Costs of computing the inputs of programs, in tenths of a nanosecond per sample.
+#define COST_OF_POINTS 20u ///< cost of the points if all shapes are spheres and planes
+#define COST_OF_SURFACES 40u ///< cost with other shapes, whose normals are computed together with the points
 
 static const glint_key none;
 
@@ -37,7 +37,7 @@ static glint_key like_of(const glint_plan_pattern *own, int field)
     return program ? glint_key_add(program->structure, parts, sizeof parts) : none;
 }
 
-/// Records a program that differs from the last frame's. Returns false when out of memory.
+/// Records a program whose structure differs from the last frame's program. Returns false when out of memory.
 static bool begin_field(glint_split_field *f, const glint_program *program, glint_key like)
 {
     clear_field(f);
@@ -76,7 +76,8 @@ static bool any_changed(const glint_split_field *f)
     return any;
 }
 
-/// Returns whether derived planes overwrite the results of a material's programs, so that all programs must run again.
+/// Returns whether a material's programs share planes: results of some programs are overwritten by planes derived
+/// from them, so that all programs must run again.
 static bool is_joined(const glint_plan_pattern *own)
 {
     return own->made >> GLINT_FIELD_AMBIENT & 1 || own->desc.normalized;
@@ -108,8 +109,8 @@ static bool split(glint_split_material *m, const glint_plan_pattern *own, uint32
     return true;
 }
 
-/// Does the same when numbers change for the first time. If caching for all numbers that ever changed does not pay,
-/// splits for the numbers that have just changed.
+/// Does the same when numbers change for the first time. First splits by all numbers that ever changed. If caching
+/// does not pay then, splits only by the numbers that have just changed.
 static bool split_again(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     for (int field = 0; field < GLINT_FIELD_PLANES; field++)
@@ -125,8 +126,8 @@ static bool split_again(glint_split_material *m, const glint_plan_pattern *own, 
     return split(m, own, saved);
 }
 
-/// Compares a material's programs with the last frame's, and splits them by their changes. Returns false when out of
-/// memory.
+/// Compares a material's programs with the last frame's programs, and splits them by the numbers that changed.
+/// Returns false when out of memory.
 static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint32_t saved)
 {
     bool more = false, other = false;
@@ -146,7 +147,7 @@ static bool follow(glint_split_material *m, const glint_plan_pattern *own, uint3
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
-/// Assigns positions to a material's cached values.
+/// Assigns positions in the cache to a material's cached values.
 static void assign_slots(glint_splits *splits, glint_split_material *m, const glint_plan_patterns *patterns,
                          uint32_t made)
 {

@@ -9,10 +9,11 @@
 
 /// A program and its changes.
 typedef struct glint_split_field {
-    glint_key like; ///< of the program and its inputs, except for its numbers; all zero: no program
+    glint_key like; ///< key of the program and its inputs without the numbers; all zero: no program
     uint32_t number_count;
-    double *numbers; ///< owned: the numbers in the last frame
-    bool *changed, *now; ///< owned: whether each number has ever changed, and has changed in this frame
+    double *numbers; ///< owned: the values of the numbers in the last frame
+    bool *changed, *now; ///< owned flags: whether each number has ever changed, and whether it has changed in this
+        ///< frame
     glint_split *split; ///< owned; NULL: none of its numbers changes
     /// Positions of the cached values, among the numbers or booleans of a sample
     uint32_t slot[GLINT_PROGRAM_OUTPUTS_MAX];
@@ -20,16 +21,18 @@ typedef struct glint_split_field {
 
 typedef struct glint_split_material {
     glint_split_field of[GLINT_FIELD_PLANES];
-    uint32_t again; ///< fields that depend on changing numbers, one bit each: computed by programs or derived from them
-    bool whole; ///< the programs run whole, because caching does not pay
+    uint32_t again; ///< the fields that depend on changing numbers, one bit each: fields computed by programs, and
+        ///< fields derived from these
+    bool whole; ///< whether the programs run as a whole, because caching does not pay
 } glint_split_material;
 
 typedef struct glint_splits {
     glint_split_material *of; ///< one for each material of the plan; owned
     uint32_t material_count;
-    glint_key surface; ///< of the last frame
-    glint_key key; ///< of the values cached for this frame; all zero: none
-    uint32_t numbers, planes, truths; ///< cached per sample: doubles; the plan's planes, if some do not change; bits
+    glint_key surface; ///< key of the last frame's surfaces
+    glint_key key; ///< key of the values cached for this frame; all zero: none
+    uint32_t numbers, planes, truths; ///< numbers of cached values per sample: doubles; the plan's planes, if some do
+        ///< not change; bits
 } glint_splits;
 
 /// Called before a frame. Without memory, nothing is cached.
