@@ -65,8 +65,8 @@ glint_status glint_shader_forward(const glint_program *shader, uint32_t inputs, 
 
 /// inputs  the inputs to derive by, one bit each.
 ///
-/// The derivatives are as exact as in glint_program_slope. Where an output is clamped (see the planes of glint_program_args) its slope is 0.
-/// The caller releases the gradient, on error too.
+/// The derivatives are as exact as in glint_program_slope. Where an output is clamped (see the planes of
+/// glint_program_args), its slope is 0. The caller releases the gradient, on error too.
 glint_status glint_shader_gradient(const glint_program *shader, uint32_t inputs, glint_gradient *out, glint_error *error);
 void glint_gradient_release(glint_gradient *gradient);
 

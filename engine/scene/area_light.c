@@ -9,13 +9,15 @@
 #define PI 0x1.921fb54442d18p+1
 #define GOLDEN 0x1.3c6ef372fe95p-1 // (sqrt(5) - 1) / 2
 #define PLANAR 1e-6 // tolerance for corners outside the plane or inside an edge, as a fraction of the polygon's size
-#define SET_SAMPLES_MAX 4096 // most light samples over all sets; beyond it, samples of a pixel share patterns
+// most light samples over all sets; if a light needs more, the samples of a pixel share sets
+#define SET_SAMPLES_MAX 4096
 
 typedef const double (*corners)[3];
 
 // ---- Polygons ----
 
-/// Computes the normal with twice the area as its length: the sum of the fan's cross products.
+/// Computes the polygon's normal, whose length is twice the polygon's area: the sum of the cross products of its
+/// triangle fan.
 static void area_vector(const glint_light_desc *desc, double out[3])
 {
     out[0] = out[1] = out[2] = 0;
@@ -35,7 +37,7 @@ void glint_light_sample_polygon_normal(const glint_light_desc *desc, double norm
     vec_normalize(normal, normal);
 }
 
-/// Returns the largest distance of a corner from the first one, by components.
+/// Returns the largest distance of a corner from the first corner along any axis.
 static double polygon_size(const glint_light_desc *desc)
 {
     double size = 0;
@@ -138,7 +140,8 @@ typedef struct surface {
     bool parallelogram;
 } surface;
 
-/// Computes two unit vectors perpendicular to the normal; if the normal is an axis, they have zeros.
+/// Computes two unit vectors perpendicular to the normal and to each other. If the normal is an axis, some of their
+/// components are exactly 0.
 static void find_frame(surface *s)
 {
     double axis[3] = { 0, 0, 0 };
@@ -194,7 +197,7 @@ static void on_triangle(const double a[3], const double b[3], const double c[3],
         out[k] = a[k] + (x * (b[k] - a[k]) + y * (c[k] - a[k]));
 }
 
-/// Maps the square to the fan's triangles, which divide u by their areas.
+/// Maps the square to the triangles of the polygon's fan; each triangle gets a part of u in proportion to its area.
 static void polygon_point(const surface *s, double u, double v, double position[3])
 {
     corners corner = s->desc->vertices;
@@ -241,8 +244,8 @@ uint32_t glint_light_sample_sets(const glint_light_desc *desc, double pixel_samp
     return sets;
 }
 
-/// Returns a pixel's position in the sequence: each 2 x 2 pixels are consecutive, so that they also have an even set
-/// of points.
+/// Returns a pixel's position in the sequence: the pixels of each 2 x 2 block are consecutive, so that they have an
+/// even set of points, too.
 static uint32_t lane_order(uint32_t lane)
 {
     const uint32_t x = lane & 3, y = lane >> 2;
@@ -314,7 +317,7 @@ static void square_point(uint32_t i, uint32_t samples, bool cone, const double s
     square[1] -= floor(square[1]);
 }
 
-/// Computes the part of a cone's sample that does not depend on the point.
+/// Computes the part of a sample in a cone that does not depend on the shaded point.
 static void cone_point(const double square[2], double position[3])
 {
     position[0] = square[0];

@@ -8,10 +8,10 @@
 /// Checks a polygon: at least three corners, finite, different, in one plane, convex, with an area.
 glint_status glint_light_sample_check_polygon(const glint_light_desc *desc, glint_error *error);
 
-/// Computes the unit normal, on the side from which the corners run counter-clockwise.
+/// Computes the unit normal of a polygon, on the side from which its corners run counter-clockwise.
 void glint_light_sample_polygon_normal(const glint_light_desc *desc, double normal[3]);
 
-/// Returns the area of the side or sides that shine; 0 for a light without a surface.
+/// Returns the area of the side or sides that emit light; 0 for a light without a surface.
 double glint_light_sample_area(const glint_light_desc *desc);
 
 /// Returns the approximate distance from the light's centre, or from a corner of it, to its border.

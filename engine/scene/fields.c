@@ -44,7 +44,7 @@ static glint_status check_choice(const glint_object_field *f, unsigned value, gl
     return value < count ? GLINT_OK : glint_fail(error, GLINT_ERR_INVALID, "%s: no such %s", f->name, f->name);
 }
 
-/// Returns whether a field has a value: it has no flag, or its flag is true.
+/// Returns whether a field of a description is set: it has no flag, or its flag is true.
 static bool is_given(const glint_object_field *f, const void *desc)
 {
     return !f->set_offset || *((const bool *)desc + f->set_offset);

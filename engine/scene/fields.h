@@ -22,8 +22,9 @@ extern const glint_object_field *const glint_light_fields[]; ///< of each glint_
 
 /// Writes the defaults of the fields into a description.
 void glint_fields_reset(const glint_object_field *fields, void *desc);
-/// Checks the fields that are set, in the order of the table; the message names the first that is wrong. The caller
-/// checks numbers and angles without `expected`, and types other than numbers, vectors, colours and choices.
+/// Checks the fields that are set, in the order of the table; the message names the first field that is wrong. The
+/// caller checks the rest: numbers and angles without `expected`, and all types except numbers, vectors, colours and
+/// choices.
 glint_status glint_fields_check(const glint_object_field *fields, const void *desc, glint_error *error);
 /// Returns how many numbers a field has: 3, 1 or 0.
 int glint_field_numbers(const glint_object_field *field);

@@ -1,4 +1,5 @@
-/// Groups (shapes with a common transform) and combined solids. They and their members may be in several others.
+/// Groups (shapes with a common transform) and combined solids. Groups, solids and their members may each be in
+/// several other groups and solids.
 #include "engine/base/hash.h"
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
@@ -20,7 +21,7 @@ static bool too_deep(glint_shape *shape, size_t level, uint64_t stamp)
     return false;
 }
 
-/// Records that a shape is at least `level` groups deep.
+/// Records that a shape is nested at least `level` groups deep.
 static void sink(glint_shape *shape, size_t level)
 {
     if (shape->level >= level)
@@ -44,7 +45,7 @@ static bool holds(glint_shape *shape, const glint_shape *wanted, uint64_t stamp)
     return false;
 }
 
-/// Determines for each mesh in a part whether it is closed.
+/// Determines for each mesh in a part of a combined solid whether the mesh is closed.
 static glint_status find_closures(const glint_shape *part, glint_error *error)
 {
     glint_status status = part->mesh ? glint_mesh_find_closure(part->mesh, error) : GLINT_OK;
@@ -53,7 +54,8 @@ static glint_status find_closures(const glint_shape *part, glint_error *error)
     return status;
 }
 
-/// Returns the expectation for a message if a part, or something in it, has no inside (`found`); NULL: it has one.
+/// Returns what a message must expect if a part, or a shape in it, has no inside; `found` is that shape. NULL:
+/// everything has an inside.
 static const char *refusal_of(const glint_shape *part, const glint_shape **found)
 {
     *found = part;

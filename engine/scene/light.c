@@ -157,7 +157,7 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
                        "attenuation: with a radiance and shadow = caps, expected {1, 0, 0}, got {%.9g, %.9g, "
                        "%.9g}",
                        a[0], a[1], a[2]);
-    // the radius is squared
+    // the kernels square the radius
     if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0)
         status = glint_check_range("radius", desc->radius, 1e-150, 1e150,
                                    "0 or a number 1e-150 .. 1e150 together with a radiance", error);

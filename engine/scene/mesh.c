@@ -43,9 +43,9 @@ typedef struct builder {
     glint_mesh *mesh;
     size_t capacity; ///< capacity, in triangles
     glint_polygon face;
-    size_t number; ///< of the face, from 1
+    size_t number; ///< number of the face, from 1
     glint_ears ears;
-    uint32_t *index; ///< material of each triangle; NULL: all have the same
+    uint32_t *index; ///< material of each triangle; NULL: all triangles have the same material
     glint_mesh_faults *faults; ///< NULL: faults are errors
     glint_error *error;
 } builder;
@@ -57,7 +57,7 @@ static const double *vertex(const builder *b, uint32_t corner)
 
 static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Resizes an array unless it is NULL. Returns false and leaves the array unchanged if memory is out.
+/// Resizes an array unless it is NULL. Returns false and leaves the array unchanged if out of memory.
 static bool resize(void **array, size_t bytes)
 {
     void *made = *array ? realloc(*array, bytes) : NULL;
@@ -87,7 +87,7 @@ static bool grow(builder *b)
     return good;
 }
 
-/// Returns the index of a corner; `none` becomes the index after the last one.
+/// Returns the number of a normal or pair of coordinates, or the number after the last one if it is `none`.
 static uint32_t number_or(uint32_t number, uint32_t none, size_t count)
 {
     return number == none ? (uint32_t)count : number;
@@ -145,7 +145,7 @@ static void polygon_normal(builder *b)
     }
 }
 
-/// Returns whether the fan from the first corner stays within the polygon: no triangle of it is flipped.
+/// Returns whether the fan from the first corner stays within the polygon: none of its triangles is flipped.
 static bool fan_fits(const builder *b)
 {
     double cross[3];

@@ -10,7 +10,7 @@
 #include <string.h>
 
 typedef struct edge {
-    uint32_t low, high; ///< positions of its ends; low + 1 == 0: a free slot
+    uint32_t low, high; ///< positions of the edge's ends; low + 1 == 0: a free slot
     uint32_t up, down; ///< number of triangles that run from low to high, and from high to low
 } edge;
 
@@ -18,7 +18,7 @@ typedef struct seams {
     const glint_mesh *mesh;
     uint32_t *first_at; ///< for each vertex, the first vertex at the same position
     edge *edges; ///< hash table
-    size_t slots; ///< a power of two
+    size_t slots; ///< number of slots, a power of two
 } seams;
 
 static size_t power_above(size_t count)

@@ -1,5 +1,5 @@
-/// Colours and pictures of vertices and faces. Each face gets a material of one colour: its own, or the mean of its
-/// corners.
+/// Colours and pictures of vertices and faces. Each face gets a material of one colour: the face's colour, or the
+/// mean colour of its corners.
 #include "engine/base/status.h"
 #include "engine/scene/mesh_mtl.h"
 
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #define GREY_CODE 231 ///< 8-bit value of default materials: 0.8 of the light
-#define FAR_ABOVE_1 16.0 ///< no colour of range 0 .. 1 is this bright
+#define FAR_ABOVE_1 16.0 ///< no colour with the range 0 .. 1 has numbers this large
 
 /// Computes the light of each 8-bit value.
 static void fill_lights(double lights[256])
@@ -17,7 +17,8 @@ static void fill_lights(double lights[256])
         lights[code] = glint_srgb_decode(code / 255.0);
 }
 
-/// Returns the 8-bit value of the mean light of a face's corners in channel c. Corners that agree keep their value.
+/// Returns the 8-bit value of the mean light of a face's corners in channel c. If all corners have the same value,
+/// returns exactly this value.
 static uint8_t mean_code(const uint8_t (*colors)[3], const uint32_t *corners, uint32_t count, int c,
                          const double lights[256])
 {
@@ -41,8 +42,8 @@ static glint_status add_material(glint_mesh_array *materials, uint32_t color, co
     return status;
 }
 
-/// Returns whether numbers are 8-bit values 0 .. 255. Colours of range 0 .. 1 that are a little too bright have
-/// fractions.
+/// Returns whether numbers are 8-bit values 0 .. 255. Colours with the range 0 .. 1 may be a little above 1, but then
+/// have fractional numbers.
 static bool are_codes(const double *numbers, size_t count)
 {
     double most = 0;
@@ -75,7 +76,7 @@ glint_status glint_mesh_color_faces(glint_mesh_reader *r)
 {
     const uint8_t(*colors)[3] = r->colors.items;
     const uint32_t *corners = r->corners.items, *sizes = r->sizes.items;
-    glint_mesh_array shades = { .size = sizeof(uint32_t) }; // 0xrrggbb of each material
+    glint_mesh_array shades = { .size = sizeof(uint32_t) }; // the colour 0xrrggbb of each material
     glint_mesh_set set = { 0 };
     glint_status status = GLINT_OK;
     double lights[256];

@@ -1,6 +1,7 @@
 /// Cuts ears off a polygon: corners for which no other corner lies in the triangle with both neighbours. The first
 /// ear in the polygon's order is always cut. A corner that is not an ear remembers a corner that blocks it, and is
-/// tested again when that corner or a neighbour has been cut. A tree over the corners finds the blocking corners.
+/// tested again when the blocking corner or a neighbour has been cut off. A tree over the corners finds the blocking
+/// corners.
 #include "engine/scene/mesh_ears.h"
 
 #include "engine/base/status.h"
@@ -14,18 +15,18 @@
 
 /// The corners form a ring. The corners that one corner blocks form a list.
 typedef struct corner {
-    double at[2]; ///< in the polygon's plane, about -1 .. 1
+    double at[2]; ///< position in the polygon's plane, about -1 .. 1
     uint32_t previous, next;
-    uint32_t blocker; ///< the corner that blocks it; NONE: none
+    uint32_t blocker; ///< the corner that blocks this corner; NONE: none
     uint32_t first_blocked, list_previous, list_next;
-    uint32_t leaf; ///< the node that contains it
+    uint32_t leaf; ///< the leaf of the tree that contains this corner
     bool is_there, is_ear, is_queued;
 } corner;
 
 /// A node of the tree has a range of `order`; the children of node k are 2 k + 1 and 2 k + 2.
 typedef struct node {
     double low[2], high[2];
-    uint32_t first, count, remaining; ///< remaining: corners not yet cut
+    uint32_t first, count, remaining; ///< range of `order`; number of its corners that are not cut off yet
     bool is_leaf;
 } node;
 
@@ -108,8 +109,8 @@ static void flatten(const cutting *c)
     }
 }
 
-/// Moves the n-th smallest element of a range of `order`, along an axis, to its sorted position, with no larger ones
-/// before it.
+/// Moves the n-th smallest element of a range of `order`, along an axis, to its sorted position. No element before it
+/// is larger.
 static void select_nth(const corner *corners, uint32_t *order, uint32_t count, uint32_t n, int axis)
 {
     uint32_t low = 0, high = count - 1;
@@ -289,7 +290,8 @@ static void look_at(cutting *c, uint32_t i)
     uint32_t blocker = NONE;
     glint_polygon_cross(c->polygon, at->previous, i, at->next, cross);
     at->is_ear = !(vec_dot(cross, c->polygon->normal) < 0);
-    if (at->is_ear && (cross[0] != 0 || cross[1] != 0 || cross[2] != 0)) // a corner without area can always be cut
+    // a corner whose triangle has no area can always be cut off
+    if (at->is_ear && (cross[0] != 0 || cross[1] != 0 || cross[2] != 0))
         blocker = find_blocker(c, at->previous, i, at->next);
     set_blocker(c, i, blocker);
     at->is_ear = at->is_ear && blocker == NONE;

@@ -6,23 +6,23 @@
 
 /// One face of a mesh.
 typedef struct glint_polygon {
-    const double *vertices; ///< vertices of the mesh
+    const double *vertices; ///< the vertices of the mesh, three numbers each
     const uint32_t *corners; ///< indices of vertices
     uint32_t size; ///< number of corners
-    double normal[3]; ///< by Newell's sum, in units of the largest extent
+    double normal[3]; ///< normal by Newell's sum, in units of the polygon's largest extent
 } glint_polygon;
 
 /// Computes the cross product of two sides of the triangle at corners i, j, k, scaled to about 1 by a power of two;
 /// 0: no area.
 void glint_polygon_cross(const glint_polygon *polygon, uint32_t i, uint32_t j, uint32_t k, double out[3]);
 
-/// Memory for cutting polygons; starts as zeros, freed by glint_ears_free.
+/// Memory for cutting polygons. The caller sets it to zeros, and frees it with glint_ears_free.
 typedef struct glint_ears {
-    struct corner *corners; ///< of the current polygon
+    struct corner *corners; ///< corners of the current polygon
     struct node *nodes; ///< tree over the corners
     uint32_t *order, *heap, (*triangles)[3];
     size_t capacity; ///< capacity, in corners
-    size_t triangle_count; ///< number of `triangles`, each three corners of the polygon
+    size_t triangle_count; ///< number of `triangles`, each of them three corners of the polygon
 } glint_ears;
 
 void glint_ears_free(glint_ears *ears);

@@ -24,7 +24,7 @@ static void report_notes(const glint_mesh_reader *r)
     }
 }
 
-// ---- Data that a mesh cannot have ----
+// ---- Data that a mesh does not accept ----
 
 static bool is_finite(const double v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
 
@@ -146,7 +146,7 @@ static void release(glint_mesh_reader *r)
 
 static const char READS[] = "glint reads .obj .stl .ply";
 
-/// Formats of other programs by the ending of a file's name.
+/// Formats of other programs, by the extension of the file's name.
 static const char *const ENDINGS[][2] = {
     { "glb", "glTF" },
     { "gltf", "glTF" },
@@ -191,7 +191,7 @@ static const char *const ENDINGS[][2] = {
     { "mtl", "materials of an .obj" },
 };
 
-/// Formats by the first bytes of a file, whatever its name.
+/// Formats by the first bytes of the file, whatever its name.
 static const char *const BEGINNINGS[][2] = {
     { "glTF", "glTF" },          { "PK\3\4", "a zip archive, as .3mf and .usdz are" },
     { "Kaydara FBX", "FBX" },    { "BLENDER", "Blender's" },
@@ -233,7 +233,7 @@ static bool begins(const glint_mesh_text *text, const char *word)
            text->begin[from + length] <= ' ';
 }
 
-/// Chooses the reader by the first bytes if they identify the format, otherwise by the ending of the name.
+/// Chooses the reader by the first bytes if they identify the format, otherwise by the extension of its name.
 static reading reader_of(const glint_mesh_text *text)
 {
     const char *ending = ending_of(text->path);

@@ -12,15 +12,15 @@
 /// An array that grows.
 typedef struct glint_mesh_array {
     void *items;
-    size_t count, capacity, size; ///< `size` of one item, bytes
+    size_t count, capacity, size; ///< number of items; capacity in items; size of one item, bytes
 } glint_mesh_array;
 
 glint_status glint_mesh_append(glint_mesh_array *array, const void *item, glint_error *error);
 
-/// Finds items of an array by their first bytes, which are unique.
+/// A hash table that finds the items of an array by their first bytes, which must be unique.
 typedef struct glint_mesh_set {
-    uint32_t *slots; ///< indices of items from 1; 0: free
-    size_t capacity; ///< a power of two
+    uint32_t *slots; ///< index of the item + 1; 0: the slot is free
+    size_t capacity; ///< number of slots, a power of two
 } glint_mesh_set;
 
 /// Writes the index of the item that begins with the same `key_size` bytes; appends `item` if there is none.
@@ -34,13 +34,13 @@ typedef struct glint_mesh_text {
     uint64_t size; ///< bytes
     unsigned char begin[16]; ///< the first bytes of the file, `begin_bytes` of them
     size_t begin_bytes;
-    long start; ///< start of the text, after a byte order mark
-    bool lone_returns; ///< lines end in CR without LF
-    size_t skipped; ///< ignored empty lines after the current line
+    long start; ///< offset where the text starts, after a byte order mark
+    bool lone_returns; ///< whether lines end in CR without LF
+    size_t skipped; ///< number of empty lines that were ignored after the current line
     locale_t c_locale; ///< a locale with decimal points, whatever the script's locale
     char *line;
-    size_t capacity, longest; ///< bytes of `line`: capacity, and its limit
-    size_t number; ///< of the current line, from 1
+    size_t capacity, longest; ///< bytes of `line`: its capacity, and the limit of the capacity
+    size_t number; ///< number of the current line, from 1
     glint_error *error;
 } glint_mesh_text;
 
@@ -51,13 +51,13 @@ void glint_mesh_text_close(glint_mesh_text *text);
 glint_status glint_mesh_text_rewind(glint_mesh_text *text, long start);
 /// Returns whether the file begins with the mark of UTF-16.
 bool glint_mesh_text_is_utf16(const glint_mesh_text *text);
-/// Reads the next line, without its end, which is LF, CRLF or CR. *more: there was one. joined: a backslash at the
-/// end of a line joins it to the next one.
+/// Reads the next line, without its end, which is LF, CRLF or CR. *more: there was a next line. joined: a backslash
+/// at the end of a line joins it to the next one.
 glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more);
 /// Fails with GLINT_ERR_FORMAT and "PATH:LINE: WHAT expected, got 'GOT'".
 glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got);
 /// Reads a number as strtod does, with a decimal point. Also accepts exponents as written by Fortran (1.5D+03) and
-/// NaN and infinity as written by Windows (-1.#IND). *end is `at` if there is no number.
+/// NaN and infinity as written by Windows (-1.#IND). *end: the position after the number, or `at` if there is none.
 double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const char **end);
 /// Reads a finite number at *at and moves *at past it. It ends at a blank, a comment (#) or the end of the line.
 glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out);
@@ -73,12 +73,12 @@ static inline const char *glint_skip_blanks(const char *at)
     return at;
 }
 
-/// Returns whether a line begins with a word.
+/// Returns whether a line begins with a keyword.
 bool glint_mesh_is_word(const char *line, const char *word);
 
 /// Returns the path of the file `name`, which may be quoted: relative to the folder of `path`, or as it is if
-/// absolute. If that file does not exist, returns the file of the same last name in the folder of `path`. NULL: out
-/// of memory; the caller frees it.
+/// absolute. If that file does not exist, returns the path of a file in the folder of `path` with the last part of
+/// `name`. NULL: out of memory; the caller frees it.
 char *glint_mesh_sibling(const char *path, const char *name);
 
 typedef struct glint_mesh_library glint_mesh_library; ///< mesh_mtl.h
@@ -96,8 +96,8 @@ typedef enum glint_mesh_note_kind {
     GLINT_MESH_NOTE_FACE, ///< a face of fewer than 3 corners
     GLINT_MESH_NOTE_VERTEX, ///< a face with a vertex that is not finite
     GLINT_MESH_NOTE_NORMAL, ///< a normal of length 0
-    GLINT_MESH_NOTE_NO_NORMALS, ///< a corner has the index of a normal, but the file has no normals
-    GLINT_MESH_NOTE_NO_UV, ///< likewise for texture coordinates
+    GLINT_MESH_NOTE_NO_NORMALS, ///< a corner has an index of a normal, but the file has no normals
+    GLINT_MESH_NOTE_NO_UV, ///< a corner has an index of texture coordinates, but the file has none
     GLINT_MESH_NOTE_FREE_FORM, ///< curves and surfaces
     GLINT_MESH_NOTE_UNKNOWN, ///< an unknown statement
     GLINT_MESH_NOTE_COLOR, ///< colours that are ignored
@@ -107,8 +107,8 @@ typedef enum glint_mesh_note_kind {
 
 typedef struct glint_mesh_note {
     size_t count;
-    size_t line; ///< of the first one; 0: the message contains the position
-    char first[160]; ///< the message about the first one
+    size_t line; ///< line of the first case; 0: the message already contains the position
+    char first[160]; ///< message about the first case
 } glint_mesh_note;
 
 /// A mesh while its file is read.
@@ -116,19 +116,21 @@ typedef struct glint_mesh_reader {
     glint_mesh_text text;
     const glint_mesh_desc *desc;
     glint_mesh_array vertices, normals, uv, corners, corner_normals, sizes;
-    glint_mesh_array corner_uv; ///< .obj: for each corner; empty: the same as the vertex indices, or none
-    glint_mesh_array material_index; ///< for each face, if faces have materials
-    glint_mesh_library *library; ///< .obj: the materials; NULL: the materials of `desc`
+    glint_mesh_array corner_uv; ///< .obj: texture coordinates of each corner; empty: the same as the vertex indices,
+        ///< or none
+    glint_mesh_array material_index; ///< index of each face's material, if faces have materials
+    glint_mesh_library *library; ///< .obj: the materials; NULL: `desc` has the materials
     glint_mesh_array colors; ///< 8-bit sRGB red, green and blue of each vertex or face; empty: none
-    bool colors_of_faces; ///< `colors` belong to faces, not to vertices
+    bool colors_of_faces; ///< whether `colors` belong to faces instead of vertices
     glint_mesh_array
-        /// Red, green and blue as numbers, for vertices or faces, up to the last one that has them
+        /// Red, green and blue as numbers, for vertices or faces, up to the last vertex or face that has a colour
         numbers_of_colors;
     struct {
         size_t index, line;
-    } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest index that was not defined yet, from 0, and its line; 0: none
-    glint_mesh_array materials; ///< materials of `colors`: glint_material *, owned; empty: the materials of `desc`
-    glint_mesh_set vertex_set; ///< .stl: vertices by position
+    } far[GLINT_MESH_OF_COUNT]; ///< .obj: the largest index that was not defined yet when a face used it, from 0, and
+        ///< its line; 0: none
+    glint_mesh_array materials; ///< the materials of `colors`: glint_material *, owned; empty: `desc` has the materials
+    glint_mesh_set vertex_set; ///< .stl: finds vertices by their position
     bool has_normals;
     glint_mesh_note notes[GLINT_MESH_NOTE_COUNT];
     glint_error *error;

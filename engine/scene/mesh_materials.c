@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ILLUM_DEFAULT 2 ///< a highlight, no mirror
+#define ILLUM_DEFAULT 2 ///< illum without a statement: a highlight, but no mirror
 #define ROUGHNESS_DEFAULT 0.5
 #define F0_OF_PLASTIC 0.04 ///< reflectance at normal incidence for an index of 1.5
 
@@ -104,7 +104,7 @@ glint_status glint_mesh_library_begin(glint_mesh_library *library, const char *n
 
 // ---- Pictures ----
 
-/// The replacement for each kind of picture that cannot be read, for messages.
+/// For messages: what replaces each kind of picture if it cannot be read.
 static const char *const map_instead[GLINT_MAP_COUNT] = { "its Kd", "its Ks", "its d", "no relief" };
 
 /// Writes the picture of a material to *out; NULL, after a warning: it cannot be read.
@@ -142,7 +142,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
 
 // ---- Materials ----
 
-/// Selects microfacets with the roughness Pr and the metallic share Pm.
+/// Sets up microfacets with the roughness Pr and the metallic share Pm.
 static void roughen(glint_mesh_entry *e)
 {
     const double metal = e->metal < 0 ? 0 : e->metal;
@@ -156,7 +156,7 @@ static void roughen(glint_mesh_entry *e)
     }
 }
 
-/// Sets up mirror and refraction, by illum.
+/// Sets up mirror and refraction as illum requires.
 static void polish(glint_mesh_entry *e)
 {
     const bool bends = (e->illum == 6 || e->illum == 7) && e->clear > 0;
@@ -184,7 +184,7 @@ static void finish_fields(glint_mesh_library *library, glint_mesh_entry *e)
     }
 }
 
-/// Returns whether the bump map of a material has a height. Counts materials without one.
+/// Returns whether the bump map of a material has a height. Counts the materials whose bump map has no height.
 static bool has_height(glint_mesh_library *library, const glint_mesh_entry *e)
 {
     if (e->height == 0 && library->flat++ == 0)
@@ -253,7 +253,7 @@ static glint_status make_material(glint_mesh_library *library, const glint_mesh_
     return status;
 }
 
-/// Records which materials have faces without texture coordinates.
+/// Determines which materials have faces without texture coordinates.
 static void find_uv(glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     const uint32_t *sizes = reader->sizes.items, *index = reader->material_index.items, *uv = reader->corner_uv.items;
@@ -287,7 +287,7 @@ static glint_status look_up(glint_mesh_library *library, const glint_mesh_reader
     return GLINT_OK;
 }
 
-/// Writes " and N more" for `count` - 1 more items; "" if there are none.
+/// Writes " and N more", with N = `count` - 1; "" if N is 0.
 static const char *spell_more(size_t count, char out[32])
 {
     out[0] = 0;

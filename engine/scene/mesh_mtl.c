@@ -9,14 +9,14 @@
 
 // ---- The statements of a file ----
 
-/// The ignored lines and words of a .mtl file. Each of the two kinds gives one warning.
+/// The ignored lines and words of a .mtl file. Lines and words each give one warning.
 typedef struct ignored_parts {
     size_t bad; ///< invalid lines
     glint_error first_bad;
-    char words[160]; ///< unsupported statements, each once
+    char words[160]; ///< unsupported statements, each listed once
 } ignored_parts;
 
-/// Adds a word to the unsupported statements, once.
+/// Adds a word to the list of unsupported statements unless it is there already.
 static void add_word(const char *at, ignored_parts *ignored)
 {
     char word[40];
@@ -67,7 +67,7 @@ static glint_status read_range(const glint_mesh_text *text, const char *at, doub
     return GLINT_OK;
 }
 
-/// Returns the number of words of a map option; 0: it is not an option.
+/// Returns the number of words that a map option takes; 0: the word is not an option.
 static int option_words(const char *at)
 {
     static const struct {
@@ -105,7 +105,7 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
 typedef struct map_options {
     glint_mesh_map mapping;
     double height; ///< -bm
-    char bm[GLINT_NAME_SIZE]; ///< the file's text for -bm
+    char bm[GLINT_NAME_SIZE]; ///< the text of the option -bm in the file
 } map_options;
 
 /// Reads options up to the first word that is not an option, and returns the position of that word.
@@ -132,7 +132,7 @@ static const char *read_options(const glint_mesh_text *text, const char *at, map
     return at;
 }
 
-/// Returns the end of a picture's name: the end of the line, or the options that follow it.
+/// Returns the end of a picture's name: the end of the line, or the begin of the options that follow the name.
 static const char *find_name_end(const char *at)
 {
     const char *end = at;
@@ -172,7 +172,7 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, glint_
 const char *const glint_mesh_map_words[GLINT_MAP_COUNT] = { "map_Kd", "map_Ks", "map_d", "map_Bump" };
 static const char *const bump_words[] = { "map_bump", "bump" }; ///< other spellings of map_Bump
 
-/// Reads a statement about a picture; *known: it was one.
+/// Reads a statement about a picture. *known: it is such a statement.
 static glint_status read_picture(const glint_mesh_text *text, const char *at, glint_mesh_entry *to,
                                  ignored_parts *ignored, bool *known)
 {
@@ -187,7 +187,7 @@ static glint_status read_picture(const glint_mesh_text *text, const char *at, gl
     return GLINT_OK;
 }
 
-/// Reads a statement with one number; *known: it was one. An invalid statement changes nothing.
+/// Reads a statement with one number. *known: it is such a statement. An invalid statement changes nothing.
 static glint_status read_one(const glint_mesh_text *text, const char *at, glint_mesh_entry *to, bool *known)
 {
     const struct {
@@ -233,8 +233,8 @@ static bool says_nothing(const glint_mesh_text *text, const char *at)
     return true;
 }
 
-/// Notes a statement that has no field in materials. Ka is ignored because ambient follows Kd; sharpness belongs to
-/// another one.
+/// Notes an unsupported statement. Some statements are ignored without a note: Ka because ambient follows Kd, and
+/// sharpness because it only matters together with another unsupported statement.
 static void note_word(const glint_mesh_text *text, const char *at, ignored_parts *ignored)
 {
     static const char *const silent[] = { "Ka", "map_Ka", "sharpness", "Km" };
@@ -307,7 +307,7 @@ static void warn_of_ignored(const glint_mesh_reader *reader, const char *path, i
                     ignored->words, strchr(ignored->words, ',') ? "are" : "is");
 }
 
-/// Reads one file; *there: it could be opened. Faults in the file cause warnings.
+/// Reads one file. *there: whether it could be opened. Faults in the file cause warnings.
 static glint_status read_file(glint_mesh_library *library, const glint_mesh_reader *reader, const char *path, bool last,
                               bool *there)
 {

@@ -14,7 +14,7 @@ typedef struct glint_mesh_map {
 glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double factor[3],
                               size_t channels, glint_program **out, glint_error *error);
 
-/// Determines whether the mean of a picture is grey: height maps are grey, normal maps are bluish.
+/// Determines whether the mean colour of a picture is grey, as in height maps; normal maps are bluish.
 glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glint_error *error);
 
 /// Creates an empty library; NULL: out of memory.
@@ -23,7 +23,7 @@ void glint_mesh_library_free(glint_mesh_library *library); ///< NULL: nothing
 /// Handles mtllib: reads the materials of one or several files; `names` is the rest of the line. A file that cannot
 /// be read causes a warning.
 glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_mesh_reader *reader, const char *names);
-/// Handles usemtl: the next faces have this material.
+/// Handles usemtl: the faces that follow have this material.
 void glint_mesh_library_use(glint_mesh_library *library, const char *name);
 /// Writes the index of a face's material among all materials that faces use, in the order of their first faces.
 glint_status glint_mesh_library_face(glint_mesh_library *library, uint32_t *number, glint_error *error);

@@ -1,5 +1,5 @@
-/// Reads Wavefront .obj files line by line. Memory holds only the vertices, normals, coordinates and faces read so
-/// far.
+/// Reads Wavefront .obj files line by line. Only the vertices, normals, coordinates and faces read so far are in
+/// memory.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/mesh_mtl.h"
@@ -44,7 +44,7 @@ static glint_status read_numbers(reader *r, const char **at, int count, double v
     return GLINT_OK;
 }
 
-/// Notes that the numbers after the coordinates are not colours, for this vertex and all others.
+/// Notes that the numbers after a vertex's coordinates are not colours, for this and all other vertices.
 static void refuse_colors(reader *r)
 {
     glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, r->text.number,
@@ -205,7 +205,7 @@ static const char *rest_of(char *at)
     return at;
 }
 
-/// Reads a statement about materials; *known: it was one.
+/// Reads a statement about materials. *known: it is such a statement.
 static glint_status read_material(reader *r, char *at, bool *known)
 {
     const bool uses = glint_mesh_is_word(at, "usemtl");

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/// Makes a texture coordinate, multiplied by the scale of the map, plus its offset.
+/// Makes the value of a texture coordinate: multiplied by the map's scale, plus the map's offset.
 static glint_value coord_of(glint_maker *p, const glint_mesh_map *map, int axis)
 {
     const glint_value at = glint_maker_input(p, axis ? GLINT_INPUT_UV_V : GLINT_INPUT_UV_U);
@@ -33,7 +33,8 @@ glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map
 glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glint_error *error)
 {
     static const double one[3] = { 1, 1, 1 },
-                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 }; // averages the whole picture
+                        // a footprint of 1 averages the whole picture
+                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 };
     const glint_mesh_map whole = { .scale = { 1, 1 } };
     double mean[3] = { 0 };
     glint_program *program = NULL;

@@ -14,10 +14,10 @@ typedef struct body {
     glint_mesh_reader *reader;
     const glint_ply_head *head;
     const glint_ply_element *element;
-    uint64_t row; ///< row within the element, from 1
-    const char *at; ///< GLINT_PLY_TEXT: position in the row's line
-    bool takes_wedges; ///< corners of faces have texture coordinates, because vertices have none
-    bool bad_normals; ///< some normals are 0 or not finite
+    uint64_t row; ///< number of the row within the element, from 1
+    const char *at; ///< GLINT_PLY_TEXT: position in the line of the row
+    bool takes_wedges; ///< whether texture coordinates come from the corners of faces, because vertices have none
+    bool bad_normals; ///< whether some normals are 0 or not finite
 } body;
 
 // ---- Numbers ----
@@ -121,7 +121,7 @@ static glint_status read_number(body *b, glint_ply_type type, double *out)
     return b->head->format == GLINT_PLY_TEXT ? read_word(b, out) : read_bytes(b, type, out);
 }
 
-/// Checks that a number is whole and 0 .. most.
+/// Checks that a number is a whole number from 0 to `most`.
 static glint_status check_whole(body *b, double number, double most, const char *field, uint32_t *out)
 {
     char expected[96], got[40];
@@ -162,8 +162,8 @@ static glint_status read_face(body *b, const glint_ply_property *p, uint32_t *si
     return GLINT_OK;
 }
 
-/// Reads triangle strips: each vertex after the first two makes a triangle with the two before it; every other one is
-/// flipped.
+/// Reads triangle strips: each vertex after the first two makes a triangle with the two before it; every second
+/// triangle is flipped.
 static glint_status read_strips(body *b, const glint_ply_property *p)
 {
     static const uint32_t three = 3;
@@ -180,7 +180,7 @@ static glint_status read_strips(body *b, const glint_ply_property *p)
         if (!status)
             status = check_whole(b, number, (double)b->head->vertex_count - 1, "a vertex number", &last[2]);
         const bool is_flat =
-            last[0] == last[1] || last[1] == last[2] || last[0] == last[2]; // joins two parts of a strip
+            last[0] == last[1] || last[1] == last[2] || last[0] == last[2]; // such triangles join two parts of a strip
         if (!status && ++length >= 3 && !is_flat) {
             const uint32_t odd = length % 2, corners[3] = { last[odd ? 0 : 1], last[odd ? 1 : 0], last[2] };
             for (int k = 0; k < 3 && !status; k++)
@@ -225,10 +225,10 @@ static glint_status pass_over(body *b, const glint_ply_property *p)
     return status;
 }
 
-/// Reads the properties of a row. Numbers that meshes use go to `v`.
+/// Reads the properties of a row. The numbers that a mesh uses go to `v`.
 static glint_status read_properties(body *b, double v[GLINT_PLY_NUMBERS])
 {
-    uint32_t size = 0; // corners of the face
+    uint32_t size = 0; // number of corners of the face
     for (uint32_t i = 0; i < b->element->property_count; i++) {
         const glint_ply_property *p = &b->element->properties[i];
         glint_status status;
@@ -250,8 +250,8 @@ static glint_status read_properties(body *b, double v[GLINT_PLY_NUMBERS])
     return GLINT_OK;
 }
 
-/// Adds a colour that is not 8-bit, as numbers, whose range is known only after all are read. 16-bit integers are
-/// divided by 65535, others by 255.
+/// Adds a colour whose numbers are not 8-bit integers. Their range is known only after all colours are read. 16-bit
+/// integers are divided by 65535, other numbers by 255.
 static glint_status add_color_of_type(body *b, const double rgb[3])
 {
     glint_mesh_reader *r = b->reader;
@@ -277,7 +277,7 @@ static glint_status add_color(body *b, const double v[GLINT_PLY_NUMBERS])
         return add_color_of_type(b, v + GLINT_PLY_RED);
     for (int c = 0; c < 3; c++) {
         const double code = v[GLINT_PLY_RED + c];
-        if (!(code >= 0 && code <= 255 && code == floor(code))) { // possible in text files
+        if (!(code >= 0 && code <= 255 && code == floor(code))) { // text files may contain such numbers
             snprintf(got, sizeof got, "%.15g", code);
             return fail_at(b, "a colour value 0 .. 255", got);
         }

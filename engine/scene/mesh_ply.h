@@ -9,7 +9,7 @@
 
 typedef enum glint_ply_format { GLINT_PLY_TEXT, GLINT_PLY_LITTLE, GLINT_PLY_BIG } glint_ply_format;
 
-/// Types of numbers; each has two names.
+/// Types of numbers; each type has two names.
 typedef enum glint_ply_type {
     GLINT_PLY_INT8,
     GLINT_PLY_UINT8,
@@ -22,7 +22,8 @@ typedef enum glint_ply_type {
     GLINT_PLY_TYPE_COUNT
 } glint_ply_type;
 
-/// The meaning of a property for a mesh. The first ones are numbers of a vertex; a face has only the colours.
+/// The meaning of a property for a mesh. The first properties are numbers of a vertex; of these, a face has only the
+/// colours.
 typedef enum glint_ply_role {
     GLINT_PLY_X,
     GLINT_PLY_Y,
@@ -43,7 +44,7 @@ typedef enum glint_ply_role {
 } glint_ply_role;
 
 typedef struct glint_ply_property {
-    glint_ply_type type, count_type; ///< count_type: type of a list's length
+    glint_ply_type type, count_type; ///< type of the property; count_type: type of the length of a list
     bool is_list;
     glint_ply_role role;
 } glint_ply_property;
@@ -58,10 +59,11 @@ typedef struct glint_ply_element {
 typedef struct glint_ply_head {
     glint_ply_format format;
     uint32_t element_count;
-    uint64_t vertex_count, face_count; ///< face_count: rows of elements that have faces or strips
+    uint64_t vertex_count, face_count; ///< number of vertices; face_count: number of rows in all elements that have
+        ///< faces or strips
     char texture[512]; ///< the picture that the file names; "": none
     const glint_ply_element *colored; ///< the element that gives the colours; NULL: there are none
-    glint_ply_type color_type; ///< type of these colours
+    glint_ply_type color_type; ///< type of the numbers of these colours
     glint_ply_element elements[GLINT_PLY_ELEMENTS_MAX];
 } glint_ply_head;
 

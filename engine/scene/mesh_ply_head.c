@@ -74,7 +74,7 @@ static glint_status read_property(glint_mesh_reader *r, glint_ply_element *e, ch
         return glint_mesh_refuse(&r->text, "at most 256 properties", words[0]);
     p.role = role_of(e, &p, rest[1]);
     if (p.role >= GLINT_PLY_RED && p.role <= GLINT_PLY_BLUE && glint_ply_has_role(e, p.role))
-        p.role = GLINT_PLY_PASSED_OVER; // other colours, with another name
+        p.role = GLINT_PLY_PASSED_OVER; // other colours, which have another name
     if (p.role != GLINT_PLY_PASSED_OVER && glint_ply_has_role(e, p.role))
         return glint_mesh_refuse(&r->text, "a property once", rest[1]);
     e->properties[e->property_count++] = p;
@@ -125,7 +125,7 @@ static void split(char *line, char *words[7])
     words[count] = NULL;
 }
 
-/// Reads the comment that names the picture of a mesh; the first one counts.
+/// Reads the comment that names the picture of a mesh; only the first such comment counts.
 static void take_texture(glint_mesh_reader *r, glint_ply_head *h)
 {
     static const char comment[] = "comment TextureFile";
@@ -185,7 +185,7 @@ static bool has_colors(const glint_ply_element *e, glint_ply_type *type)
     return count == 3;
 }
 
-/// Chooses the colours: faces before vertices. A material of the script replaces all of them.
+/// Chooses the colours: faces before vertices. If the script gives a material, the file's colours are not used.
 static void find_colors(const glint_mesh_reader *r, glint_ply_head *h)
 {
     bool any = false;

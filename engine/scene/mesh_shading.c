@@ -42,9 +42,9 @@ static glint_status make_normals(glint_mesh *mesh, glint_error *error)
 
 /// The shading points of each vertex, as linked lists: one for each combination of normal and material.
 typedef struct chains {
-    uint32_t *first; ///< first of each vertex; GLINT_NO_NORMAL: none
-    uint32_t *next, *normal; ///< for each shading point
-    uint32_t *material; ///< likewise; NULL: all have the same
+    uint32_t *first; ///< first shading point of each vertex; GLINT_NO_NORMAL: none
+    uint32_t *next, *normal; ///< for each shading point, the next one of the same vertex; its normal
+    uint32_t *material; ///< material of each shading point; NULL: all have the same material
 } chains;
 
 /// Returns the shading point of a vertex with a given normal and material, and makes it if needed. A corner without a
@@ -116,7 +116,8 @@ glint_status glint_mesh_prepare(glint_mesh *mesh, const uint32_t *index, glint_s
     return status;
 }
 
-/// Returns the smallest cosine between a triangle's face and the normals of its corners.
+/// Returns the smallest cosine of an angle between the normal of a triangle's face and the normal of one of its
+/// corners.
 static double least_cosine(const glint_mesh *mesh, size_t i)
 {
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;

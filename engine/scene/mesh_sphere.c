@@ -9,7 +9,7 @@
 #define PI 0x1.921fb54442d18p+1
 
 typedef struct globe {
-    uint32_t across, down; ///< segments around, and from pole to pole
+    uint32_t across, down; ///< number of segments around the axis, and from pole to pole
     size_t vertex_count, face_count;
     double *vertices, *normals;
     uint32_t *corners, *sizes;
@@ -37,7 +37,7 @@ static void add_vertex(globe *g, const double center[3], double radius, uint32_t
     g->vertex_count++;
 }
 
-/// Returns the index of a vertex: one pole, then ring after ring, then the other pole.
+/// Returns the index of a vertex. The vertices are one pole, then ring after ring, then the other pole.
 static uint32_t vertex_at(const globe *g, uint32_t x, uint32_t y)
 {
     if (y == 0)

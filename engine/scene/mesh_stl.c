@@ -6,8 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
-#define HEAD_BYTES 84 ///< a text and the number of triangles
-#define TRIANGLE_BYTES 50 ///< a normal, three corners in binary32, two bytes of no fixed meaning
+#define HEAD_BYTES 84 ///< bytes before the triangles: a text, and the number of triangles
+#define TRIANGLE_BYTES 50 ///< bytes of a triangle: a normal, three corners in binary32, two bytes of no fixed meaning
 
 /// Adds a triangle. Corners with the same bits share a vertex.
 static glint_status add_triangle(glint_mesh_reader *r, double corners[3][3])
@@ -56,10 +56,10 @@ static glint_status read_binary(glint_mesh_reader *r, uint32_t count)
 
 static const char *const WORDS[] = { "facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet" };
 
-/// The position within the structure of a text.
+/// The parser's position within the structure of a text file.
 typedef struct state {
-    int step; ///< 0 .. 6, within a facet; 0 also between facets
-    bool ended; ///< the last solid has ended
+    int step; ///< step within a facet, 0 .. 6; 0 also between facets
+    bool ended; ///< whether the last solid has ended
     double corners[3][3];
 } state;
 
@@ -98,7 +98,7 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
     return s->step ? GLINT_OK : add_triangle(r, s->corners);
 }
 
-/// Reads the next line that is not empty, with its first word in lower case; *at NULL: there is none.
+/// Reads the next line that is not empty, with its first word in lower case; *at is NULL at the end of the file.
 static glint_status next_statement(glint_mesh_reader *r, char **at)
 {
     bool more = true;

@@ -138,7 +138,7 @@ static glint_status grow_line(glint_mesh_text *text, size_t used)
 }
 
 /// Reads the rest of a line's end after a carriage return: LF, also after several carriage returns. If a file's first
-/// line ends in CR without LF, nothing else belongs to the end: any bytes may follow a header.
+/// line ends in CR without LF, only the CR belongs to the end, because any bytes may follow a header.
 static void end_at_return(glint_mesh_text *text)
 {
     int c = '\r', returns = 0;
@@ -181,7 +181,8 @@ glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more
     return GLINT_OK;
 }
 
-/// Reads a number again, with E instead of Fortran's D or of a missing letter: 1.5D+03, 1.5-103.
+/// Reads a number again after replacing Fortran's exponents, with a D or without a letter, by exponents with E:
+/// 1.5D+03, 1.5-103.
 static double read_fortran(const glint_mesh_text *text, const char *at, const char **end)
 {
     char copy[64], *copy_end;
@@ -267,7 +268,7 @@ char *glint_mesh_sibling(const char *path, const char *name)
         return out;
     for (const char *next; (next = strpbrk(slash + 1, "/\\")) != NULL;)
         slash = next;
-    char *base = join(path, slash + 1); // last part of a path from another machine
+    char *base = join(path, slash + 1); // the last part of the name, which may be a path from another machine
     if (!base || access(base, F_OK) != 0) {
         free(base);
         return out;

@@ -14,7 +14,7 @@ struct glint_material {
 struct glint_light {
     size_t references;
     glint_light_desc desc; ///< its `vertices` point to the copy below
-    double (*vertices)[3]; ///< owned copy; or NULL
+    double (*vertices)[3]; ///< owned copy of the corners; or NULL
 };
 
 struct glint_camera {
@@ -24,9 +24,10 @@ struct glint_camera {
 
 /// Whether a mesh has an inside.
 typedef struct glint_closure {
-    bool computed; ///< the other fields are valid
-    bool inverted; ///< triangles run clockwise as seen from outside
-    uint32_t triangles; ///< number of triangles at the open edge, where they do not balance; 0: the mesh is closed
+    bool computed; ///< whether the other fields are valid
+    bool inverted; ///< whether triangles run clockwise as seen from outside
+    uint32_t triangles; ///< number of triangles at the open edge, where the two directions do not balance; 0: the
+        ///< mesh is closed
     double edge[2][3]; ///< the open edge, in the direction of the first of these triangles
 } glint_closure;
 
@@ -35,10 +36,12 @@ typedef struct glint_mesh {
     double (*vertices)[3];
     uint32_t (*triangles)[3]; ///< indices of vertices
     size_t vertex_count, triangle_count;
-    double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
-    uint32_t (*triangle_normals)[3]; ///< indices of normals; NULL: equal to the vertex indices
+    double (*normals)[3]; ///< normals of length 1, or 0 for no normal; NULL: there are none
+    uint32_t (*triangle_normals)[3]; ///< indices of the normals of each triangle's corners; NULL: equal to the vertex
+        ///< indices
     double (*uv)[2]; ///< texture coordinates; NULL: there are none
-    uint32_t (*triangle_uv)[3]; ///< indices of uv pairs; NULL: equal to the vertex indices
+    uint32_t (*triangle_uv)[3]; ///< indices of the uv pairs of each triangle's corners; NULL: equal to the vertex
+        ///< indices
     glint_key uv_key; ///< hash of `uv` and `triangle_uv`
     size_t *uv_missing; ///< for each material, the first face with a corner without coordinates, from 1; 0: none
     uint32_t *faces; ///< the face that each triangle was cut from, from 0; NULL: each triangle is a face
@@ -46,7 +49,8 @@ typedef struct glint_mesh {
     uint32_t (*shading_points)[3]; ///< gouraud shading: one index for each combination of vertex, normal and
         ///< material; NULL: equal to the vertex indices
     size_t shading_point_count; ///< 0: not computed yet
-    double center[3], radius, segments; ///< of a triangulated sphere; segments 0: the mesh is not one
+    double center[3], radius, segments; ///< centre, radius and segments of a triangulated sphere; segments 0: the
+        ///< mesh is not one
     double bend; ///< see glint_mesh_bend; 0: none, or not computed yet
     glint_closure closure; ///< see glint_mesh_find_closure
 } glint_mesh;
@@ -55,18 +59,19 @@ struct glint_shape {
     size_t references;
     uint64_t revision; ///< changes with every change of the shape; unique among all shapes
     glint_shape_desc desc;
-    size_t count; ///< spheres, or triangles; 1 for other kinds
+    size_t count; ///< number of spheres or triangles; 1 for other kinds
     glint_mesh *mesh; ///< GLINT_SHAPE_MESH
-    glint_list children; ///< of a group or combined solid
-    size_t level; ///< largest nesting depth that it has had
-    uint64_t stamp; ///< stamp of the last search that visited it
-    size_t probed; ///< level that this search assumed
-    uint64_t checked; ///< a group: the latest revision of any shape when its children were last checked
+    glint_list children; ///< members of a group, or parts of a combined solid
+    size_t level; ///< largest depth of nesting that the shape has had
+    uint64_t stamp; ///< `stamp` of the last search that visited this shape
+    size_t probed; ///< the depth of nesting at which this search visited the shape
+    uint64_t checked; ///< for a group: the latest revision of any shape when the group's children were last checked
     uint64_t children_hash; ///< hash of the children's revisions at that time
-    bool dressed; ///< it has its own material instead of the whole solid's
+    bool dressed; ///< as a part: whether it has its own material instead of the material of the whole solid
     double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: bounding box
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each sphere
-    uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: material index of each sphere or triangle, or NULL
+    uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: index of the material of each sphere or triangle;
+        ///< or NULL
     glint_material **materials;
     size_t material_count;
 };
@@ -89,24 +94,24 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
 /// Extends the bounding box by a ball; `first`: the box is empty so far.
 void glint_shape_stretch(glint_shape *shape, const double center[3], double radius, bool first);
 static inline bool glint_shape_combines(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_UNION; }
-/// Returns whether it consists only of its children.
+/// Returns whether a shape consists only of its children.
 static inline bool glint_shape_has_children(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_GROUP; }
-/// Returns whether rays intersect it as a solid: a box, disk, cylinder, cone or torus.
+/// Returns whether rays intersect a shape as a solid: a box, disk, cylinder, cone or torus.
 static inline bool glint_shape_is_solid(const glint_shape *shape)
 {
     return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
 }
-/// Refuses a part of a combined solid that has no inside. who: the solid's name, for the message.
+/// Refuses a part of a combined solid that has no inside. who: the name of the combined solid, for the message.
 glint_status glint_check_part(const char *who, const glint_shape *part, glint_error *error);
 /// Returns the name of a kind: "difference", ...
 const char *glint_shape_kind_name(glint_shape_kind kind);
 /// Gives a shape a new revision.
 void glint_shape_changed(glint_shape *shape);
-/// Returns the revision; a group's revision changes with every change of anything in it.
+/// Returns the revision; a group's revision changes with every change of a shape in the group.
 uint64_t glint_shape_revision(glint_shape *shape);
 
 bool glint_transform_is_identity(const glint_transform *t);
-/// Returns whether a map preserves angles up to rounding, and the factor of lengths.
+/// Returns whether a map preserves angles up to rounding, and writes the factor by which the map scales lengths.
 bool glint_transform_similar(const glint_transform *t, double *factor);
 void glint_transform_point(const glint_transform *t, const double p[3], double out[3]);
 void glint_transform_linear(const glint_transform *t, double out[3][3]);
@@ -114,9 +119,9 @@ void glint_transform_linear(const glint_transform *t, double out[3][3]);
 double glint_linear_cofactors(double m[3][3], double out[3][3]);
 glint_status glint_check_transform(const char *name, const glint_transform *t, glint_error *error);
 
-/// Returns whether a pattern consists only of numbers 0 .. most, which can replace it; one number stands for all
-/// three. Patterns with numbers out of range are run, so that the numbers are clamped and counted like other pattern
-/// results.
+/// Returns whether a pattern consists only of numbers 0 .. `most`, which can replace the pattern. If the pattern has
+/// one number, it is used for all three. Patterns with numbers out of range are run, so that the numbers are clamped
+/// and counted like other pattern results.
 bool glint_pattern_numbers(const glint_program *program, double most, double out[3]);
 
 /// Retains `material`, or makes one with default fields if it is NULL.
@@ -131,7 +136,7 @@ glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error);
 
 /// Writes "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
 void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);
-/// Returns whether it has a specular term that is not black, judging by its numbers.
+/// Returns whether a material has a specular term that is not black, judging by its numbers.
 bool glint_material_is_shiny(const glint_material_desc *desc);
 /// Return whether the material transmits light anywhere, and whether it has a mirror.
 bool glint_material_transmits(const glint_material_desc *desc);

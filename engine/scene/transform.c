@@ -40,7 +40,7 @@ glint_transform glint_transform_scale(const double by[3])
     return out;
 }
 
-/// Sine and cosine; quarter turns are exact.
+/// Computes sine and cosine; both are exact for quarter turns.
 static void turn(double degrees, double *sine, double *cosine)
 {
     static const double quarter[4][2] = { { 0, 1 }, { 1, 0 }, { 0, -1 }, { -1, 0 } };
@@ -88,8 +88,8 @@ void glint_transform_linear(const glint_transform *t, double out[3][3])
             out[i][j] = t->m[i][j];
 }
 
-/// Returns a b - c d with an error of at most two units of 2^-53 relative to the result, even under cancellation
-/// (Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82, 2013).
+/// Returns a b - c d with a relative error of at most 2^-52, even under cancellation (Kahan; Jeannerod, Louvet,
+/// Muller, Math. Comp. 82, 2013).
 static double difference_of_products(double a, double b, double c, double d)
 {
     const double product = c * d, lost = fma(-c, d, product);
