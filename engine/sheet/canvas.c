@@ -55,7 +55,7 @@ static void draw_mask(glint_canvas *canvas, int x, int y, glint_mask *mask, uint
     free(mask->coverage);
 }
 
-/// Makes the mask of a text, at most `most` pixels long. False: out of memory.
+/// Makes the mask of a text; `most` limits the text's length in pixels. False: out of memory.
 static bool make_mask(const glint_typeface *typeface, const char *text, size_t size, int most, glint_mask *mask)
 {
     const int width = glint_typeface_width(typeface, text, size);

@@ -22,29 +22,29 @@
 
 #define INK 0x222222
 #define FAINT_INK 0x6a6a6a
-#define MARK 0xd9594c // around the chosen cell
-#define LARGE_PICTURE 900 // labels of wider pictures are twice as large
-#define AREA_MAX ((int64_t)400000000) // pixels of a sheet: 1.2 GB while it is drawn
-#define PART_GAP 2 // letters between parts of a label on the same line
+#define MARK 0xd9594c // colour of the frame around the chosen cell
+#define LARGE_PICTURE 900 // labels of pictures at least this wide are twice as large; pixels
+#define AREA_MAX ((int64_t)400000000) // most pixels of a sheet: 1.2 GB while the sheet is drawn
+#define PART_GAP 2 // gap between parts of a label on the same line, in letters
 #define LETTER 8 // width of a letter in 13ths of its size
-#define SIZE 13 // of labels, pixels, unless the sheet sets it
-#define BAR_MOST 20 // length of a colour bar without a length of its own, in label sizes, at most
+#define SIZE 13 // size of labels in pixels, unless the sheet sets it
+#define BAR_MOST 20 // longest colour bar if it has no length of its own, in label sizes
 
 /// The sheet's measures, in pixels.
 typedef struct layout {
     const glint_sheet_desc *desc;
     int width, height; ///< of each picture
     glint_letters *letters; ///< owned; NULL: the bitmap font
-    glint_typeface typeface, title; ///< of labels; of the title, which is twice as large
-    double unit; ///< pixels of the picture in a 13th of the label size
+    glint_typeface typeface, title; ///< typeface of labels; typeface of the title, which is twice as large
+    double unit; ///< pixels in a 13th of the label size
     bool lost; ///< out of memory: some text is missing
     int rows;
     int column, label; ///< width of a column; height of the label below a picture
-    int left, top; ///< of the first picture
-    int band; ///< height of a row together with its differences
+    int left, top; ///< position of the first picture
+    int band; ///< height of a row of pictures together with its row of differences
     int gap;
     int note_lines; ///< at the bottom
-    char note[160]; ///< explains the rows of differences, in parts
+    char note[160]; ///< text that explains the rows of differences, in parts
     glint_overlay_desc bar; ///< the sheet's colour bar, with lengths in pixels
     int bar_size[2];
     int64_t sheet_width, sheet_height;
@@ -81,7 +81,7 @@ static void write_text(layout *l, glint_canvas *canvas, const glint_typeface *ty
 }
 
 /// Breaks `label` into lines at most `space` wide; parts share a line if they fit. Unless `canvas` is NULL, draws the
-/// lines from `y` down, centred in the space `space` that begins at `x`. Returns the number of lines.
+/// lines from `y` down, centred between `x` and `x` + `space`. Returns the number of lines.
 static int set_label(layout *l, const char *label, int space, glint_canvas *canvas, int x, int y)
 {
     int lines = 0;
@@ -197,7 +197,7 @@ static uint8_t *row_at(glint_canvas *canvas, int x, int y)
     return canvas->pixels + ((size_t)y * (size_t)canvas->width + (size_t)x) * (size_t)canvas->channels;
 }
 
-/// Returns the top left of the picture of cell `i`, from 0.
+/// Computes the upper left corner of the picture of cell `i`, from 0.
 static void place_cell(const layout *l, size_t i, int *x, int *y)
 {
     int column = (int)(i % (size_t)l->desc->columns), row = (int)(i / (size_t)l->desc->columns);
@@ -205,7 +205,7 @@ static void place_cell(const layout *l, size_t i, int *x, int *y)
     *y = l->top + row * l->band;
 }
 
-/// Draws |a - b| times the gain, for two pictures on the canvas, below `a`, with a text.
+/// Draws |a - b| times the gain below picture `a`, with a text. Both pictures are on the canvas already.
 static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
 {
     int ax, ay, bx, by, most = 0;
@@ -267,7 +267,7 @@ static void draw_bar(layout *l, glint_canvas *canvas)
     glint_stamps_free(&stamps);
 }
 
-/// Draws "name ->" above the columns and next to the rows, centred.
+/// Draws "name ->" centred above the columns, and centred next to the rows.
 static void draw_titles(layout *l, glint_canvas *canvas)
 {
     const glint_sheet_desc *desc = l->desc;

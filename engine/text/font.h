@@ -6,11 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define GLINT_FONT_WIDTH 8 ///< of every character, pixels
+#define GLINT_FONT_WIDTH 8 ///< width of every character, pixels
 #define GLINT_FONT_HEIGHT 13
 
-/// Returns the 13 rows, from the top, of the UTF-8 character at *text, and moves *text past it. The leftmost pixel is
-/// the highest bit. The font has Latin-1, Greek and a few signs; other characters and invalid bytes look like U+FFFD.
+/// Returns the 13 rows of the glyph of the UTF-8 character at *text, from the top, and moves *text past the
+/// character. The leftmost pixel is the highest bit. The font has Latin-1, Greek and a few signs; other characters
+/// and invalid bytes look like U+FFFD.
 const uint8_t *glint_font_next(const char **text);
 
 /// Returns the code of the UTF-8 character at *text, and moves *text past it; U+FFFD for an invalid byte.

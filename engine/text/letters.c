@@ -24,7 +24,8 @@
 struct glint_letters {
     FT_Library library;
     FT_Face face;
-    struct FT_MemoryRec_ memory; ///< FreeType continues after a failed allocation; this allocator records the failure
+    struct FT_MemoryRec_ memory; ///< FreeType continues after a failed allocation, so this allocator records the
+        ///< failure
     bool lost;
     double em; ///< the face's current size; 0: not set
 };
@@ -50,7 +51,7 @@ static void *resize(FT_Memory memory, long before, long size, void *block)
     return note_lost(memory, realloc(block, (size_t)size));
 }
 
-/// The paths of the font on common systems.
+/// The paths where common systems have the font.
 static const char *const font_paths[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", // Debian
     "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", // Fedora
@@ -125,7 +126,7 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
     return GLINT_OK;
 }
 
-/// Returns a key of the font: its file contains a checksum of all of it.
+/// Returns a key of the font. The font's file contains a checksum of the whole font.
 glint_key glint_letters_key(const glint_letters *letters)
 {
     glint_key key = { 0 };
@@ -163,10 +164,10 @@ void glint_letters_measure(glint_letters *letters, double em, int *above, int *b
 /// The state of a text that is being drawn.
 typedef struct pen {
     double x; ///< pixels
-    FT_UInt before; ///< previous letter, for kerning; 0: none
+    FT_UInt before; ///< the previous letter, for kerning; 0: none
 } pen;
 
-/// Loads the next letter, and moves the pen to its start. False: the text has no more letters.
+/// Loads the next letter, and moves the pen to its start. False: the text is at its end.
 static bool next_letter(glint_letters *letters, const char **text, pen *at)
 {
     FT_Face face = letters->face;
@@ -202,7 +203,7 @@ static void add_coverage(const FT_Bitmap *from, int x, int y, glint_mask *mask)
         }
 }
 
-/// Draws the loaded letter, which begins at x on the baseline above row y, clipped to the mask.
+/// Draws the loaded letter, clipped to the mask. The letter begins at x, and its baseline is the upper edge of row y.
 static void draw_letter(glint_letters *letters, double x, int y, glint_mask *mask)
 {
     FT_Outline *outline = &letters->face->glyph->outline;

@@ -17,19 +17,20 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error);
 void glint_letters_close(glint_letters *letters); ///< NULL: no effect
 /// Returns whether memory was short at some point, so that text was measured or drawn incompletely.
 bool glint_letters_lost(const glint_letters *letters);
-/// Returns a key of everything except the text that its pixels depend on: the font, and the version of the library.
+/// Returns a key of everything, except the text, that the pixels of a text depend on: the font, and the version of
+/// the library.
 glint_key glint_letters_key(const glint_letters *letters);
 
 /// Returns "FreeType 2.12.1", a static string; NULL: the build has no FreeType.
 const char *glint_letters_library(void);
 
-/// Returns the pixels above and below the baseline of letters of `em` pixels, and the distance between lines.
+/// Returns the pixels above and below the baseline that letters of `em` pixels take, and the distance between lines.
 void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line);
 /// Returns the width of the first `size` bytes of UTF-8 text, at most to its end; pixels.
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size);
 /// Returns whether the font has a letter.
 bool glint_letters_has(const glint_letters *letters, uint32_t code);
-/// Draws the text into the mask. x: its left end; y: the row below the baseline.
+/// Draws the text into the mask. x: the left end of the text; y: the row just below the baseline.
 void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask);
 
 #endif

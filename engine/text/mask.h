@@ -1,4 +1,4 @@
-/// The coverage of each pixel. Internal.
+/// A mask: the coverage of each pixel of a rectangle. Internal.
 #ifndef GLINT_TEXT_MASK_H
 #define GLINT_TEXT_MASK_H
 

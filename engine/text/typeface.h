@@ -7,9 +7,9 @@
 typedef struct glint_typeface {
     glint_letters *letters; ///< borrowed; NULL: the bitmap font
     double em; ///< font size, pixels
-    int scale; ///< of the bitmap font: picture pixels per font pixel, >= 1
-    int height; ///< from the lowest to the highest point of letters; pixels
-    int above; ///< the part of `height` above the baseline
+    int scale; ///< for the bitmap font: picture pixels per font pixel, >= 1
+    int height; ///< height from the lowest to the highest point of letters; pixels
+    int above; ///< the part of `height` above the baseline; pixels
     int line; ///< distance between lines, pixels
 } glint_typeface;
 
