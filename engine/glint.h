@@ -58,14 +58,14 @@ typedef struct glint_error {
 /// numbers give the same bits on every machine.
 
 typedef struct glint_program glint_program; ///< immutable
-typedef struct glint_builder glint_builder; ///< a program under construction; used by one thread at a time
+typedef struct glint_builder glint_builder; ///< a program under construction; only one thread at a time may use it
 typedef struct glint_texture glint_texture; ///< immutable
 typedef uint32_t glint_value; ///< a value in a builder: one double per point
 
-#define GLINT_PROGRAM_LENGTH_MAX 4096 ///< instructions of a program
-#define GLINT_PROGRAM_ROWS_MAX 256 ///< intermediate values that a program may need at the same time
-#define GLINT_PROGRAM_OUTPUTS_MAX 8 ///< outputs of a program, per point
-#define GLINT_PARAMETERS_MAX 32 ///< parameters that numbers of a program may depend on
+#define GLINT_PROGRAM_LENGTH_MAX 4096 ///< most instructions of a program
+#define GLINT_PROGRAM_ROWS_MAX 256 ///< most intermediate values that a program may need at the same time
+#define GLINT_PROGRAM_OUTPUTS_MAX 8 ///< most outputs of a program, per point
+#define GLINT_PARAMETERS_MAX 32 ///< most parameters that the numbers of a program may depend on
 
 /// A pattern gives a number or a colour at a point, a shader the light reflected from one light source.
 typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } glint_program_kind;
@@ -81,7 +81,7 @@ typedef enum glint_input {
     GLINT_INPUT_N_X, ///< the geometric normal, facing the viewer
     GLINT_INPUT_N_Y, ///< likewise
     GLINT_INPUT_N_Z, ///< likewise
-    GLINT_INPUT_V_X, ///< towards the eye
+    GLINT_INPUT_V_X, ///< direction towards the eye
     GLINT_INPUT_V_Y, ///< likewise
     GLINT_INPUT_V_Z, ///< likewise
     /// The shape's own surface coordinates. Plane and disk: lengths along two tangents. Box: 0 .. 1 on each face.
@@ -91,21 +91,21 @@ typedef enum glint_input {
     GLINT_INPUT_UV_V, ///< likewise
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, in world units
     GLINT_INPUT_UV_FOOTPRINT, ///< width of a pixel at the point, in units of u and v
-    GLINT_INPUT_L_X, ///< towards the light; this and all later inputs are for shaders only
+    GLINT_INPUT_L_X, ///< direction towards the light; this and all later inputs are for shaders only
     GLINT_INPUT_L_Y, ///< likewise
     GLINT_INPUT_L_Z, ///< likewise
-    GLINT_INPUT_LIGHT_R, ///< colour times intensity times attenuation
+    GLINT_INPUT_LIGHT_R, ///< the light's colour times its intensity times its attenuation
     GLINT_INPUT_LIGHT_G, ///< likewise
     GLINT_INPUT_LIGHT_B, ///< likewise
     GLINT_INPUT_DISTANCE, ///< distance to the light, in world units; infinite for a directional light
     GLINT_INPUT_KD_R, ///< the material's diffuse reflectance at the point
     GLINT_INPUT_KD_G, ///< likewise
     GLINT_INPUT_KD_B, ///< likewise
-    GLINT_INPUT_KS_R, ///< its specular reflectance
+    GLINT_INPUT_KS_R, ///< the material's specular reflectance at the point
     GLINT_INPUT_KS_G, ///< likewise
     GLINT_INPUT_KS_B, ///< likewise
-    GLINT_INPUT_SHININESS, ///< its exponent
-    GLINT_INPUT_COUNT ///< how many there are
+    GLINT_INPUT_SHININESS, ///< the material's exponent at the point
+    GLINT_INPUT_COUNT ///< number of inputs
 } glint_input;
 
 /// Operations. `true` is 1 and `false` is 0; as a condition, every number except 0 is true. min and max are
@@ -141,19 +141,19 @@ typedef enum glint_op {
     GLINT_OP_OR,
     GLINT_OP_NOT,
     GLINT_OP_SELECT, ///< c ? a : b; operands c, a, b
-    GLINT_OP_STEP, ///< x < e ? 0 : 1; operands e, x
+    GLINT_OP_STEP, ///< 0 if x < e, otherwise 1; operands e, x
     GLINT_OP_SMOOTHSTEP, ///< t t (3 - 2 t), t = min(max((x - a) / (b - a), 0), 1); operands a, b, x
     GLINT_OP_CLAMP, ///< min(max(x, a), b); operands x, a, b
     // elementary functions, implemented here; special values as in C99, annex F
-    GLINT_OP_SIN, ///< of radians; error at most 4e-16, for any angle
+    GLINT_OP_SIN, ///< sine of an angle in radians; error at most 4e-16, for any angle
     GLINT_OP_COS, ///< likewise
     GLINT_OP_EXP2, ///< 2^a; relative error 2.5e-16
     GLINT_OP_LOG2, ///< relative error 4e-16; absolute error 4e-16 where the result is below 1
     GLINT_OP_POW, ///< a^b; relative error 1e-12
     GLINT_OP_ATAN2, ///< operands y, x; -pi .. pi; error 6e-16
     GLINT_OP_ACOS, ///< 0 .. pi; NaN outside -1 .. 1; error 6e-16
-    GLINT_OP_HIGHLIGHT, ///< x^s for a cosine x and an exponent s, by the built-in models' kernel in float: seven
-        ///< digits, 0 below 2^-40. x is clamped to at most 1, s to at least 0
+    GLINT_OP_HIGHLIGHT, ///< x^s for a cosine x and an exponent s, computed in float by the kernel of the built-in
+        ///< models: seven digits, 0 below 2^-40. x is clamped to at most 1, s to at least 0
     // patterns
     GLINT_OP_NOISE, ///< operands x, y, z: smooth gradient noise, -1 .. 1, 0 at whole numbers. Gradients and fade of
         ///< K. Perlin, "Improving Noise", SIGGRAPH 2002; the hash is our own. Repeats after 2^32
@@ -174,8 +174,8 @@ typedef enum glint_op {
     GLINT_OP_COUNT
 } glint_op;
 
-#define GLINT_OPERANDS_MAX 6 ///< operands of an operation, at most
-#define GLINT_RESULTS_MAX 8 ///< results of an operation, at most
+#define GLINT_OPERANDS_MAX 6 ///< most operands of an operation
+#define GLINT_RESULTS_MAX 8 ///< most results of an operation
 
 /// The description of an operation.
 typedef struct glint_op_info {
@@ -229,8 +229,8 @@ glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_v
 /// The program retains the texture.
 glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
                                  glint_value footprint, glint_value out[4], glint_error *error);
-/// Returns whether a value is a number, and writes the number unless `number` is NULL. False if it is not a value of
-/// the builder.
+/// Returns whether a value is a number, and writes the number unless `number` is NULL. Also returns false if `value`
+/// is not a value of the builder.
 bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number);
 /// Returns the number of instructions so far, including those that no output needs.
 size_t glint_builder_length(const glint_builder *builder);
@@ -247,11 +247,11 @@ glint_status glint_builder_finish(glint_builder *builder, const glint_value *out
 glint_program *glint_program_retain(glint_program *program);
 /// Releases a reference; the last one frees the program and releases its textures. NULL: nothing. Any thread.
 void glint_program_release(glint_program *program);
-/// Evaluates the program at one point with the kernel that a frame uses. The results are a frame's values before they
-/// are rounded to float.
+/// Evaluates the program at one point with the kernel that a frame uses. The results are the values that a frame
+/// computes, before they are rounded to float.
 ///
-/// inputs   those that the program does not read may be anything.
-/// outputs  written: as many as the program has.
+/// inputs   values of the inputs; those that the program does not read may be anything.
+/// outputs  written: one value for each output of the program.
 ///
 /// The variable GLINT_ISA may cause an error: GLINT_ERR_UNSUPPORTED for an instruction set that this machine lacks,
 /// GLINT_ERR_INVALID for an unknown one.
@@ -259,17 +259,19 @@ glint_status glint_program_evaluate(const glint_program *program, const double i
                                     double *outputs, glint_error *error);
 glint_program_kind glint_program_kind_of(const glint_program *program);
 size_t glint_program_output_count(const glint_program *program);
-size_t glint_program_length(const glint_program *program); ///< instructions; 0 if all outputs are inputs or numbers
-size_t glint_program_rows(const glint_program *program); ///< intermediate values that are live at the same time
+size_t glint_program_length(const glint_program *program); ///< number of instructions; 0 if all outputs are inputs or
+    ///< numbers
+size_t glint_program_rows(const glint_program *program); ///< largest number of intermediate values that are live at
+    ///< the same time
 bool glint_program_reads(const glint_program *program, glint_input input);
 /// Returns a hash of the operations, their operands and the textures, excluding numbers: programs that differ only in
 /// numbers have the same hash.
 void glint_program_structure(const glint_program *program, uint64_t key[2]);
-/// Returns true and fills `outputs` if all outputs are numbers, the same at every point.
+/// Returns true and fills `outputs` if every output is a number and so the same at every point.
 bool glint_program_constant(const glint_program *program, double *outputs);
-/// Returns a program that computes the derivatives of the outputs with respect to a parameter, for glint_slope. They
-/// are exact, except that floor and similar steps, comparisons and a texel's footprint count as constant. Owned by
-/// `program`. NULL: none of its numbers depends on the parameter.
+/// Returns a program that computes the derivatives of the outputs with respect to a parameter, for glint_slope. The
+/// derivatives are exact, except that floor and similar steps, comparisons and a texel's footprint count as constant.
+/// Owned by `program`. NULL: none of its numbers depends on the parameter.
 const glint_program *glint_program_tangent(const glint_program *program, size_t parameter);
 /// Returns the instructions as text, one per line, "r3 = muladd p.x 0.5 r1", followed by the outputs. Numbers read
 /// back as the same bits. The caller frees the text. NULL: out of memory.
@@ -281,7 +283,7 @@ typedef enum glint_wrap {
     GLINT_WRAP_CLAMP, ///< the border texels continue
     GLINT_WRAP_AROUND ///< repeats in u, continues the border in v: for a picture around a ball, or a panorama
 } glint_wrap;
-/// How the colour between texels is computed.
+/// How the colour at a point between texels is computed.
 typedef enum glint_filter {
     /// Interpolates four texels of a mipmap level, which is the picture halved as often as the footprint requires
     GLINT_FILTER_BILINEAR,
@@ -290,9 +292,9 @@ typedef enum glint_filter {
 
 /// The fields of a texture.
 typedef struct glint_texture_desc {
-    const char *path; ///< a .png, or .jpg where the build has libjpeg; NULL: `rgb`
+    const char *path; ///< path of a .png file, or of a .jpg file if the build has libjpeg; NULL: `rgb` is the picture
     const uint8_t *rgb; ///< red, green and blue of each pixel, 8 bits each, top row first; borrowed for the call
-    int width, height; ///< of `rgb`, pixels, >= 1
+    int width, height; ///< size of `rgb`, pixels, >= 1
     glint_wrap wrap; ///< default repeat
     glint_filter filter; ///< default bilinear
     bool linear; ///< true: pixel values are linear. false, the default: they are sRGB and are decoded, unless the
@@ -301,7 +303,8 @@ typedef struct glint_texture_desc {
 
 /// Returns the defaults: no path, repeat, bilinear, sRGB.
 glint_texture_desc glint_texture_desc_default(void);
-/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT if it cannot be read or is not a complete PNG; GLINT_ERR_NOMEM.
+/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT if the file cannot be read or is not a complete picture;
+/// GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
 /// Makes a texture that shares the same picture but has another wrap. GLINT_ERR_NOMEM.
 glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,
@@ -345,23 +348,24 @@ typedef enum glint_field_type {
 
 /// One field of an object: the row that defines its default, its check and its documentation.
 typedef struct glint_object_field {
-    const char *name; ///< in scripts and messages
-    const char *member; ///< in the description; NULL: the field has no member of its own
-    glint_field_type type; ///< of the value in the description
+    const char *name; ///< name of the field in scripts and messages
+    const char *member; ///< name of the member of the description; NULL: the field has no member of its own
+    glint_field_type type; ///< type of the value in the description
     size_t offset; ///< in the description
-    size_t set_offset; ///< of a bool that says whether the field is set; 0: the field always counts as set
-    size_t program_offset; ///< of the glint_program * that replaces the value unless it is NULL; 0: there is none
+    size_t set_offset; ///< offset of a bool that says whether the field is set; 0: the field always counts as set
+    size_t program_offset; ///< offset of a glint_program *; unless NULL, the program replaces the value. 0: there is
+        ///< none
     unsigned takes; ///< what may replace a number: bits GLINT_TAKES_...
-    bool required; ///< an object cannot be made without it
+    bool required; ///< whether an object cannot be made without the field
     /// GLINT_TYPE_CHOICE: names of the values, from 0, ending with NULL; GLINT_TYPE_OBJECT: the kind
     const char *const *names;
     const struct glint_object_field *parts; ///< GLINT_TYPE_TABLE: ends with a row without a name
     double low, high; ///< smallest and largest number allowed, for each component; angles in radians
-    const char *expected; ///< the allowed values, in words, for messages: "number >= 0"
-    double initial[3]; ///< the default, or the number of the default choice; components not given are 0
+    const char *expected; ///< the allowed values in words, for messages: "number >= 0"
+    double initial[3]; ///< the default, or the index of the default choice; components not given are 0
     const char *follows; ///< the field that supplies the value until this one is set; NULL: none
-    const char *unit; ///< "world units"; NULL: none
-    const char *doc; ///< meaning, in one line
+    const char *unit; ///< the unit, such as "world units"; NULL: none
+    const char *doc; ///< the meaning of the field, in one line
     const void *custom; ///< GLINT_TYPE_CUSTOM: for the caller's use
 } glint_object_field;
 
@@ -377,7 +381,7 @@ typedef enum glint_object_kind {
     GLINT_OBJECT_POLYGON_LIGHT, ///< likewise
     GLINT_OBJECT_SPHERE_LIGHT, ///< likewise
     GLINT_OBJECT_SCENE, ///< of glint_scene_desc
-    GLINT_OBJECT_KINDS ///< how many there are
+    GLINT_OBJECT_KINDS ///< number of kinds
 } glint_object_kind;
 
 /// Returns the fields of a kind of object, in the order of the documentation, followed by a row without a name.
@@ -429,8 +433,8 @@ typedef struct glint_material_programs {
     /// point is lit only if n.l > 0 for the unperturbed n as well
     glint_program *bump;
     glint_program *opacity; ///< pattern of one number; see glint_opacity_mode
-    glint_program *shader; ///< replaces `model`: computes the diffuse term of each light, and also the specular term
-        ///< if it has six outputs
+    glint_program *shader; ///< replaces `model`. The program computes the diffuse term of each light and, if it has
+        ///< six outputs, also the specular term
 } glint_material_programs;
 
 /// The fields of a material. Reflectances are fractions of light, in linear RGB.
@@ -439,7 +443,7 @@ typedef struct glint_material_desc {
     bool has_ambient; ///< false: `ambient` follows `diffuse`
     double ambient[3]; ///< reflectance: finite, >= 0; above 1 the surface gives off more light than it receives
     double diffuse[3]; ///< default 0.8
-    bool has_specular; ///< read by cook_torrance only; false: `specular` is 1
+    bool has_specular; ///< read only by cook_torrance; false: `specular` is 1
     double specular[3]; ///< default 0
     double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
     bool has_mirror; ///< false: `mirror` is 1 with `fresnel` and 0 without
@@ -512,18 +516,19 @@ typedef enum glint_light_kind {
     GLINT_LIGHT_SPHERE ///< the surface of a ball
 } glint_light_kind;
 
-#define GLINT_CORNERS_MAX 4096 ///< corners of a polygon light
+#define GLINT_CORNERS_MAX 4096 ///< most corners of a polygon light
 
 /// How a light's shadows are computed.
 typedef enum glint_shadow {
     GLINT_SHADOW_RAYS, ///< one ray to each sample of the light
     GLINT_SHADOW_HARD, ///< area lights: one ray to the centre of the light, for all of its samples
-    GLINT_SHADOW_CAPS ///< sphere lights: the share of the light's apparent disk that spheres cover, in closed form
+    GLINT_SHADOW_CAPS ///< sphere lights: the share of the light's apparent disk that is covered by spheres, computed
+        ///< in closed form
 } glint_shadow;
 
 /// The fields of a light. Each kind reads the fields whose comment names it, and those whose comment names no kind.
 typedef struct glint_light_desc {
-    glint_light_kind kind; ///< glint_light_set cannot change it
+    glint_light_kind kind; ///< kind of the light; glint_light_set cannot change it
     double color[3]; ///< default 1; finite, >= 0
     double intensity; ///< default 1; finite, >= 0; multiplies each of the three terms
     bool has_diffuse, has_specular; ///< false: the term's colour is `color`
@@ -548,15 +553,16 @@ typedef struct glint_light_desc {
     double direction[3]; ///< directional and spot light: the direction of travel; not zero, need not be unit
     double inner_rad, outer_rad; ///< spot: half angles, 0 <= inner <= outer <= pi: full light inside, none outside,
         ///< smoothstep of the cosine between; default 20 and 30 degrees
-    double exponent; ///< spot: falloff cos^exponent of the angle to the axis; >= 0, default 0
-    double normal[3]; ///< disk: points to the side that shines; not zero, need not be unit; default {0, -1, 0}
+    double exponent; ///< spot: the light is multiplied by cos^exponent of the angle to the axis; >= 0, default 0
+    double normal[3]; ///< disk: normal on the side that emits light; not zero, need not be unit; default {0, -1, 0}
     double radius; ///< disk and sphere: >= 0, 0 is a point; with `radiance` 0 or 1e-150 .. 1e150; default 1
     /// Polygon: its corners, convex and in one plane, 3 .. GLINT_CORNERS_MAX; copied. It shines on the side from
     /// which they run counter-clockwise
     const double (*vertices)[3];
     size_t vertex_count;
     bool two_sided; ///< polygon: shines on both sides; default false
-    double samples; ///< area lights: shadow rays for each sample of a pixel; whole number, 1 .. 65536; default 16
+    double samples; ///< area lights: number of shadow rays for each sample of a pixel; whole number, 1 .. 65536;
+        ///< default 16
     bool has_radiance; ///< area lights: `radiance` gives the strength; `intensity` must then be 1
     /// Name of the light pass that collects this group's lights; "": the light's own name
     char group[GLINT_NAME_SIZE];
@@ -607,7 +613,7 @@ typedef struct glint_camera_desc {
     double w, h; ///< the picture size that fx, fy, cx and cy refer to; other sizes scale them. 0, the default: they
         ///< hold for every size
     double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
-    double pixel_offset; ///< position of a single sample in a pixel, 0 .. 1; default 0.5, its centre
+    double pixel_offset; ///< position of the sample in its pixel if there is only one, 0 .. 1; default 0.5, the centre
     /// Time that the shutter is open, as a fraction of the time between frames, 0 .. 1; default 0, an instant. Used
     /// by callers that plan a frame for several times, see glint_plan_create_exposed
     double shutter;
@@ -625,7 +631,7 @@ typedef struct glint_camera_desc {
     /// 0: a round lens, the default; 3 .. 64, whole: a regular polygon inscribed in that circle, a corner up
     double blades;
     double blade_rotation_rad; ///< turns the polygon, counter-clockwise as seen by the eye; default 0
-    char name[GLINT_NAME_SIZE]; ///< for messages; "": none
+    char name[GLINT_NAME_SIZE]; ///< name for messages; "": none
 } glint_camera_desc;
 #define GLINT_SHUTTER_TIMES_MAX 1024
 
@@ -673,7 +679,7 @@ typedef enum glint_shape_kind {
     GLINT_SHAPE_DIFFERENCE ///< the points inside the first part and outside all others
 } glint_shape_kind;
 
-/// An affine map: out_i = m[i][0] x + m[i][1] y + m[i][2] z + m[i][3].
+/// An affine map from (x, y, z) to out: out_i = m[i][0] x + m[i][1] y + m[i][2] z + m[i][3].
 typedef struct glint_transform {
     double m[3][4]; ///< the last column is the translation, world units
 } glint_transform;
@@ -706,7 +712,7 @@ typedef enum glint_shading {
 /// The fields of a shape. Each kind reads the fields whose comment names it, and those whose comment names no kind.
 /// Lengths in world units.
 typedef struct glint_shape_desc {
-    glint_shape_kind kind; ///< glint_shape_create makes all kinds except spheres and meshes
+    glint_shape_kind kind; ///< kind of the shape; glint_shape_create makes all kinds except spheres and meshes
     /// Retained by the shape. NULL: a material with default fields; for a part of a combined solid, the solid's
     /// material; for the solid, the material of its first part that has one. A group has none
     glint_material *material;
@@ -718,10 +724,11 @@ typedef struct glint_shape_desc {
     double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
     double min[3], max[3]; ///< box: finite, min < max; default -1, 1
     double base[3], top[3]; ///< cylinder, cone: the centres of its ends, which differ; the cone's top is its apex
-    bool capped; ///< cylinder: closed at both ends; cone: closed at its base; default true. False: the side only,
-        ///< visible from inside too. It then has no inside: rays refract as at a solid without end
+    bool capped; ///< cylinder: closed at both ends; cone: closed at its base; default true. False: only the curved
+        ///< side, which is visible from inside, too. The shape then has no inside: rays refract as at a solid without
+        ///< end
     double axis[3]; ///< torus: not zero, need not be unit; default {0, 1, 0}
-    double major, minor; ///< torus: radius of the circle along the middle of the tube, and radius of the tube;
+    double major, minor; ///< torus: radius of the circle in the middle of the tube, and radius of the tube;
         ///< 0 < minor < major, so that the tube does not intersect itself; default 1, 0.25
     glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
@@ -749,7 +756,7 @@ size_t glint_shape_materials(const glint_shape *shape, glint_material *const **l
 /// transform. Returns false and leaves the box unchanged for other kinds, whose description gives their position.
 bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3]);
 
-#define GLINT_GROUP_DEPTH 64 ///< nesting depth of groups and combined solids
+#define GLINT_GROUP_DEPTH 64 ///< largest depth of nested groups and combined solids
 
 // Combined solids. Parts are spheres, boxes, capped cylinders and cones, tori, planes (half-spaces, inside is the
 // side opposite to the normal), closed meshes, other combined solids, and groups, which stand for the union of their
@@ -769,7 +776,7 @@ bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[
 /// itself, the same shape twice, and in a combined solid a shape without an inside. The message then names an open
 /// edge of a mesh.
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
-/// Removes the shape from the group or combined solid and releases it. GLINT_ERR_INVALID if it is not in there.
+/// Removes the shape from the group or combined solid and releases it. GLINT_ERR_INVALID if the shape is not in there.
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);
 /// Returns the number of shapes directly in the group or combined solid, not counting those in nested groups.
 size_t glint_group_count(const glint_shape *group);
@@ -780,12 +787,12 @@ typedef struct glint_spheres_desc {
     const void *data; ///< count times x, y, z, radius; any alignment; copied
     size_t count; ///< 1 .. 2^30
     bool is_float; ///< true: `data` is binary32, false: binary64; native byte order
-    glint_material *const *materials; ///< retained; NULL entries are not allowed
-    size_t material_count; ///< 0: one material with default fields
+    glint_material *const *materials; ///< materials, retained; NULL entries are not allowed
+    size_t material_count; ///< number of materials; 0: one material with default fields
     /// Material of each sphere: `count` numbers < material_count, copied; NULL: all are 0
     const uint32_t *material_index;
     bool two_sided; ///< default true: the normal is turned to the viewer
-    char name[GLINT_NAME_SIZE]; ///< for messages; "": none
+    char name[GLINT_NAME_SIZE]; ///< name for messages; "": none
 } glint_spheres_desc;
 
 /// Makes spheres. A message names the first invalid sphere, counted from 1: "data: sphere 12: radius > 0 expected,
@@ -798,38 +805,39 @@ size_t glint_spheres_count(const glint_shape *shape);
 /// corner, or by ear clipping if the fan would leave the polygon. The front is the side from which corners run
 /// counter-clockwise.
 typedef struct glint_mesh_desc {
-    const double *vertices; ///< x, y, z each; finite; copied, like all arrays here
-    size_t vertex_count; ///< 3 .. 2^31 - 2
-    const uint32_t *corners; ///< numbers of vertices, from 0, face after face
-    const uint32_t *face_sizes; ///< corners of each face, 3 or more
-    size_t face_count; ///< 1 .. 2^31 - 2; the same limit holds for the number of triangles
-    const double *normals; ///< x, y, z each; finite, not zero, need not be unit; NULL: none
-    size_t normal_count; ///< 0 without `normals`
+    const double *vertices; ///< x, y, z of each vertex; finite; copied, like all arrays here
+    size_t vertex_count; ///< number of vertices, 3 .. 2^31 - 2
+    const uint32_t *corners; ///< indices of vertices, from 0, face after face
+    const uint32_t *face_sizes; ///< number of corners of each face, 3 or more
+    size_t face_count; ///< number of faces, 1 .. 2^31 - 2; the same limit holds for the number of triangles
+    const double *normals; ///< x, y, z of each normal; finite, not zero, need not be unit; NULL: none
+    size_t normal_count; ///< number of normals; 0 without `normals`
     /// Index of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none there. NULL: each vertex has one
     /// normal, in order
     const uint32_t *normal_corners;
-    const double *uv; ///< texture coordinates, u and v each; finite; NULL: none
-    size_t uv_count; ///< 0 without `uv`
+    const double *uv; ///< texture coordinates, u and v of each pair; finite; NULL: none
+    size_t uv_count; ///< number of u, v pairs; 0 without `uv`
     /// Index of a u, v pair, from 0, for each entry of `corners`; GLINT_NO_UV: none there, and no program may read
     /// the coordinates of this mesh. NULL: each vertex has one pair, in order
     const uint32_t *uv_corners;
     bool has_shading; ///< false: phong if there are normals, otherwise faceted
     /// Phong and gouraud without normals: the normals of the faces around a vertex are averaged, weighted by area
     glint_shading shading;
-    glint_material *material; ///< retained; NULL: `materials`, the file's materials, or one with default fields
+    glint_material *material; ///< material of all faces, retained; NULL: `materials`, the file's materials, or one
+        ///< material with default fields
     /// Materials of individual faces: retained, instead of `material`; no NULL entries
     glint_material *const *materials;
-    size_t material_count; ///< 0: all faces have `material`
+    size_t material_count; ///< number of `materials`; 0: all faces have `material`
     /// Material of each face: face_count numbers < material_count, copied; NULL: all are 0
     const uint32_t *material_index;
     glint_transform transform; ///< default identity
     bool two_sided;
     char name[GLINT_NAME_SIZE];
-    /// glint_mesh_load: called before a file is opened; NULL: not called
+    /// called by glint_mesh_load before a file is opened; NULL: not called
     void (*reads)(void *context, const char *path);
-    /// glint_mesh_load: called when something in the file is ignored; the message names the file; NULL: not called
+    /// called by glint_mesh_load when something in the file is ignored; the message names the file; NULL: not called
     void (*warns)(void *context, const char *message);
-    void *context; ///< passed to both functions
+    void *context; ///< passed to both functions as `context`
 } glint_mesh_desc;
 
 #define GLINT_NO_NORMAL 0xffffffffu
@@ -874,7 +882,8 @@ glint_status glint_sphere_mesh_create(const double center[3], double radius, dou
 /// reads all triangles; do not call it for one mesh from two threads at once.
 double glint_mesh_bend(const glint_shape *shape);
 
-/// Returns the arguments of glint_sphere_mesh_create; false, and nothing written, if another function made the shape.
+/// Returns the arguments with which glint_sphere_mesh_create made a shape. Returns false and writes nothing if
+/// another function made the shape.
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
 
 // ---- Overlays -----------------------------------------------------------------------------------------------------
@@ -899,7 +908,7 @@ typedef enum glint_overlay_kind {
     GLINT_OVERLAY_AXES, ///< the world's x, y and z directions as the camera sees them, each with its name. With a
         ///< `box`: three of its edges as the camera sees them, with numbers along them
     GLINT_OVERLAY_ARROW, ///< a line between two points of the world, with a head at `to`; `text` is its label
-    GLINT_OVERLAY_LINE, ///< the same without a head; its label is next to its middle
+    GLINT_OVERLAY_LINE, ///< the same as an arrow, but without a head; its label is next to its middle
     GLINT_OVERLAY_ARC ///< the angle between the directions `from` and `to` at `point`; `text` is its label
 } glint_overlay_kind;
 
@@ -918,7 +927,7 @@ typedef enum glint_colormap {
     GLINT_COLORMAP_CIVIDIS, ///< J. R. Nunez, C. R. Anderton and R. S. Renslow, 2018
     GLINT_COLORMAP_TURBO, ///< A. Mikhailov, 2019
     GLINT_COLORMAP_COOLWARM, ///< K. Moreland, 2009
-    GLINT_COLORMAP_COUNT ///< how many there are
+    GLINT_COLORMAP_COUNT ///< number of colour maps
 } glint_colormap;
 
 /// Returns "viridis", ...; NULL if out of range.
@@ -930,13 +939,13 @@ const uint32_t *glint_colormap_table(glint_colormap map);
 typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orientation;
 
 #define GLINT_OVERLAY_TEXT_SIZE 384 ///< bytes of an overlay's text, with the ending NUL
-#define GLINT_OVERLAY_TICKS_MAX 16 ///< numbers next to a colour bar
+#define GLINT_OVERLAY_TICKS_MAX 16 ///< most numbers next to a colour bar
 #define GLINT_AXIS_NAME_SIZE 16 ///< bytes of an axis's name, with the ending NUL
 
 /// The fields of an overlay. Each kind reads the fields whose comment names it, and those whose comment names no
 /// kind.
 typedef struct glint_overlay_desc {
-    glint_overlay_kind kind; ///< glint_overlay_set cannot change it
+    glint_overlay_kind kind; ///< kind of the overlay; glint_overlay_set cannot change it
     /// All kinds except axes: UTF-8, lines separated by newlines; "": none. Without a position, a label's lines that
     /// are wider than the picture are broken at blanks
     char text[GLINT_OVERLAY_TEXT_SIZE];
@@ -954,20 +963,20 @@ typedef struct glint_overlay_desc {
     double margin;
     /// Colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1. Not tone-mapped
     double color[3];
-    bool has_background; ///< false: no rectangle is drawn behind it
-    double background[3]; ///< colour of a rectangle behind it; linear RGB as `color`
-    double opacity; ///< of the background, 0 .. 1; default 1
+    bool has_background; ///< false: no rectangle is drawn behind the overlay
+    double background[3]; ///< colour of the rectangle behind the overlay; linear RGB like `color`
+    double opacity; ///< opacity of the rectangle, 0 .. 1; default 1
     bool has_length; ///< false: colour bar 10 times `size`, axes 2.5 times
     /// Colour bar: length of the bar; axes: length of an axis parallel to the picture; points, 1 .. 10000
     double length;
     glint_colormap map; ///< colour bar
     bool has_colors; ///< true: the colour bar shows `colors` instead of `map`
     uint32_t colors[256]; ///< from low to high, 8-bit sRGB 0xRRGGBB
-    double low, high; ///< colour bar: the values at its ends; finite, different; default 0, 1
+    double low, high; ///< colour bar: the values at its ends; finite, different from each other; default 0, 1
     bool is_log; ///< colour bar: logarithmic scale; low and high are above 0
     glint_orientation orientation; ///< colour bar; default vertical
     double ticks[GLINT_OVERLAY_TICKS_MAX]; ///< colour bar: the values labelled, from low to high
-    size_t tick_count; ///< 0: about five round values
+    size_t tick_count; ///< number of `ticks`; 0: about five round values
     char names[3][GLINT_AXIS_NAME_SIZE]; ///< axes: names of x, y and z
     /// Axes. true: along edges of `box` that bound the visible part of it, instead of `at`; the upright axis is at
     /// the left, the others below. A direction that the eye looks along has no such edge and no axis; from inside the
@@ -989,12 +998,12 @@ typedef struct glint_overlay_desc {
     /// its place, and takes the first inside the picture that covers no earlier text, bar or axes and if possible no
     /// arrow, line or arc; if there is none, the first position
     double point[3];
-    bool has_radius; ///< arc. false: a twelfth of the picture's height at the distance of `point`
-    double radius; ///< arc: world units, > 0
-    bool has_width; ///< arrow, line, arc. false: an eighth of `size`
+    bool has_radius; ///< arc. false: the radius is a twelfth of the picture's height at the distance of `point`
+    double radius; ///< arc: its radius, world units, > 0
+    bool has_width; ///< arrow, line, arc. false: the width is an eighth of `size`
     double width; ///< thickness, points, 0 .. 10000; at least one pixel is drawn
-    glint_hidden hidden; ///< arrow, line, arc; default draw
-    char name[GLINT_NAME_SIZE]; ///< for messages; "": none
+    glint_hidden hidden; ///< arrow, line, arc: how the hidden part is drawn; default draw
+    char name[GLINT_NAME_SIZE]; ///< name for messages; "": none
 } glint_overlay_desc;
 
 /// Returns a description with every field at the default for this kind.
@@ -1019,8 +1028,8 @@ typedef struct glint_scene glint_scene;
 /// The fields of a scene, except its lists of objects. Light in linear RGB, lengths in world units.
 typedef struct glint_scene_desc {
     glint_camera *camera; ///< retained; may be NULL until a frame is planned
-    double ambient[3]; ///< finite, >= 0; default 0
-    double background[3]; ///< finite, >= 0; default 0
+    double ambient[3]; ///< ambient light; finite, >= 0; default 0
+    double background[3]; ///< background colour; finite, >= 0; default 0
     /// Retained: a pattern that gives the background for the direction d of a ray, instead of `background`, as seen
     /// by the eye, in mirrors, through glass and by indirect light; NULL: none. d is unit. The pattern reads d as p
     /// and world, -d as n and v, the angle of a pixel in radians as footprint (0 with parallel rays), and the
@@ -1050,7 +1059,7 @@ typedef struct glint_scene_desc {
     /// `diffuse` is emitted light and stays in the pass `ambient`. Not together with `has_indirect`, which computes
     /// the light that arrives
     bool has_ambient_occlusion;
-    double ambient_occlusion_samples; ///< rays from each visible point; whole number, 1 .. 65536
+    double ambient_occlusion_samples; ///< number of rays from each visible point; whole number, 1 .. 65536
     /// World units, > 0, may be infinite: more distant surfaces do not occlude. A transmitting surface occludes only
     /// the light that it takes; the ray continues refracted, and the distance starts again there
     double ambient_occlusion_distance;
@@ -1113,16 +1122,16 @@ typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 /// How visible surfaces are found. The pictures are identical bit by bit, except where rays lie in the plane of a
 /// triangle, so that rounding decides its edges: about one pixel in some thousand pictures taken from such planes.
 typedef enum glint_visibility {
-    GLINT_VISIBILITY_AUTO, ///< the method that is likely to be faster
-    GLINT_VISIBILITY_CAST, ///< a ray through each sample
-    GLINT_VISIBILITY_SCAN ///< triangles are projected; rays are cast at other shapes
+    GLINT_VISIBILITY_AUTO, ///< chooses the method that is likely to be faster
+    GLINT_VISIBILITY_CAST, ///< casts a ray through each sample
+    GLINT_VISIBILITY_SCAN ///< projects triangles; casts rays at other shapes
 } glint_visibility;
 
 /// The values stored for a pixel, as linear float32. Light is the mean over the samples.
 typedef enum glint_pass {
     /// (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
     GLINT_PASS_BEAUTY,
-    GLINT_PASS_BACKGROUND, ///< light of samples that hit nothing, and the colour of the depth cue
+    GLINT_PASS_BACKGROUND, ///< light of samples that hit nothing, and the light that the colour of the depth cue adds
     GLINT_PASS_AMBIENT, ///< ambient terms
     GLINT_PASS_DIFFUSE, ///< diffuse terms of all lights
     GLINT_PASS_SPECULAR, ///< specular terms of all lights
@@ -1139,7 +1148,7 @@ typedef enum glint_pass {
         ///< 0; at the pixel's centre
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; without `adaptive` 1 everywhere
     GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; at the pixel's centre
-    GLINT_PASS_COUNT, ///< how many there are
+    GLINT_PASS_COUNT, ///< number of passes
     /// The first derivative of the frame, see glint_render_desc; the others follow it. Three channels
     GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT,
     /// The first light pass of the frame, see glint_render_desc; the others follow it. Three channels
@@ -1169,7 +1178,7 @@ typedef enum glint_tone_curve {
     GLINT_TONE_FILMIC
 } glint_tone_curve;
 
-#define GLINT_EXPOSURE_MAX 32 ///< stops, in both directions
+#define GLINT_EXPOSURE_MAX 32 ///< largest exposure in stops, in both directions
 
 /// The conversion of linear light to integer pixel values, 0 .. M: exposure, curve, transfer, rounding. NaN and
 /// negative values become 0; values above the range become M.
@@ -1190,18 +1199,18 @@ void glint_tone_steps(const glint_tone_desc *tone, float least[255]);
 /// Lines drawn into a PNG of beauty where the pass `outline` is 1.
 typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
 
-#define GLINT_DERIVATIVES_MAX (GLINT_PASS_LIGHT - GLINT_PASS_DERIVATIVE) ///< derivatives of one frame, at most
+#define GLINT_DERIVATIVES_MAX (GLINT_PASS_LIGHT - GLINT_PASS_DERIVATIVE) ///< most derivatives of one frame
 #define GLINT_DERIVATIVE_NAME_SIZE 32 ///< bytes of a derivative's name, with the ending NUL
 
 /// The derivative of one field of the scene with respect to a parameter. At most one of the four objects is not NULL;
 /// if all are NULL, it is a field of the scene's own description.
 typedef struct glint_slope {
-    const glint_material *material; ///< the owner of the field; or NULL
+    const glint_material *material; ///< the owner of the field, one of these four; or NULL
     const glint_light *light; ///< likewise
     const glint_shape *shape; ///< likewise
     const glint_camera *camera; ///< likewise
-    const char *field; ///< the field's name in the description, one of those listed at glint_derivative
-    double slope[3]; ///< for each component; a single number uses the first
+    const char *field; ///< name of the field in the description, one of those listed at glint_derivative
+    double slope[3]; ///< slope of each component; a single number uses the first
     /// For a material's field that a program computes: the derivative at each point, from glint_program_tangent;
     /// `slope` is then ignored. Retained by the plan. NULL: `slope` is used
     const glint_program *program;
@@ -1220,17 +1229,17 @@ typedef struct glint_slope {
 ///   shape     spheres: center, radius; planes: point, normal
 ///   camera    eye, at, direction, up, fov_y_rad, height; with a lens also aperture, focus, focus_point
 typedef struct glint_derivative {
-    const char *name; ///< 1 .. 31 bytes; "lamp_x"
+    const char *name; ///< name of the derivative, 1 .. 31 bytes, such as "lamp_x"
     const glint_slope *slopes; ///< slopes of the same field add up
-    size_t slope_count; ///< 0: the parameter affects nothing, which a plan refuses. A slope of 0 marks a field that
-        ///< depends on it but has slope 0 here
+    size_t slope_count; ///< number of slopes. 0: the parameter affects nothing, which a plan refuses. A slope of 0
+        ///< marks a field that depends on the parameter but has slope 0 here
 } glint_derivative;
 
 /// One frame: its size, samples and passes.
 typedef struct glint_render_desc {
     /// Whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
     double width, height;
-    double samples; ///< per pixel; whole number, 1 .. 65536; default 1
+    double samples; ///< samples per pixel; whole number, 1 .. 65536; default 1
     /// 0 (default): every pixel takes all samples. Above 0, at most 3: each pixel first takes one sample, at its
     /// centre. A pixel takes all samples if it and one of its eight neighbours show different objects, normals 26
     /// degrees apart, or pixel values that differ by more than this, summed over red, green and blue, in fractions of
@@ -1239,7 +1248,8 @@ typedef struct glint_render_desc {
     double adaptive;
     glint_precision precision; ///< the precision of hits and shadows; default GLINT_DOUBLE
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
-    double seed; ///< whole number, 0 .. 2^53; each seed gives another, equally good sample pattern; 0 = unshifted
+    double seed; ///< whole number, 0 .. 2^53; each seed gives another, equally good sample pattern; 0: the pattern is
+        ///< not shifted
     /// Longest chain of reflections and refractions; whole number, 0 .. 2^31; default 5. At most 31 if a material has
     /// both and its mirror + transmission is above 1, because rays then double at each surface. From the 17th surface
     /// of a chain on, one of the two rays, chosen at random, represents both
@@ -1294,7 +1304,7 @@ typedef struct glint_effect {
 typedef struct glint_stage_info {
     const char *name; ///< "camera", "cast", "surface", "view", "light", "facet", "occlude", "vertex", ...
     char key[33]; ///< hex XXH3-128 of all data that the stage reads
-    const char *why; ///< one line for people
+    const char *why; ///< the reason for the stage, in one line for people
 } glint_stage_info;
 
 /// Numbers of rays by type.
@@ -1322,20 +1332,21 @@ glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_ren
 /// Frees the plan; images rendered from it stay valid. NULL: nothing.
 void glint_plan_destroy(glint_plan *plan);
 /// Calls `warns` for each overlay that the plan's picture cannot show as described: text outside the picture, lines
-/// wider than the picture, letters missing from the font, points behind the camera, an arrow of no length. The message
-/// names the overlay. dpi: of the file; 0: not set.
+/// wider than the picture, letters missing from the font, points behind the camera, an arrow of no length. The
+/// message names the overlay. dpi: pixels per inch of the file; 0: not set.
 glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
                                        void *context, glint_error *error);
-/// Returns the description of the frame as planned, with the passes added that others require. Belongs to the plan.
+/// Returns the description of the frame as planned, including passes that other passes require. The plan owns the
+/// description.
 const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
-/// Returns the name of light pass number `index`, from 0; owned by the plan. NULL: it has fewer.
+/// Returns the name of light pass number `index`, from 0; owned by the plan. NULL: the plan has fewer passes.
 const char *glint_plan_light_pass(const glint_plan *plan, size_t index);
 /// Return the number of effects or stages, and their list; the lists belong to the plan.
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
-/// Returns the expected rays. Primary rays are exact. Shadow rays are an upper bound, as if every sample hit a
-/// surface facing every light that casts shadows; they exclude the shadow rays of mirrored, refracted and indirect
-/// rays and of transparent objects. mirror, refraction and indirect are 0 or the first generation.
+/// Returns the expected numbers of rays. Primary rays are exact. Shadow rays are an upper bound, as if every sample
+/// hit a surface facing every light that casts shadows; they exclude the shadow rays of mirrored, refracted and
+/// indirect rays and of transparent objects. mirror, refraction and indirect are 0 or the first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 /// Estimates the work of rendering `plan` right after `before`, from their keys. Each stage whose key differs counts
 /// 1. The stages `light` and `occlude` count 1 for each light or light sample that differs; `shade` counts a half if
@@ -1358,7 +1369,7 @@ bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use 
 
 /// Worker threads, and the cache between frames.
 typedef struct glint_renderer glint_renderer;
-/// A rendered picture: the planes of its passes, and pixel values. Immutable, reference counted; any thread.
+/// A rendered picture: the planes of its passes, and its pixel values. Immutable, reference counted; any thread.
 typedef struct glint_image glint_image;
 
 /// The fields of a renderer.
@@ -1394,22 +1405,22 @@ double glint_renderer_progress(const glint_renderer *renderer);
 /// Work counters of a frame. Unlike times, they are free of noise.
 typedef struct glint_work {
     uint64_t tests; ///< ray-primitive tests: pairs that the BVH and the filters could not rule out
-    uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, evaluated
+    uint64_t light_samples; ///< evaluated pairs of a point and a light, or of a point and a sample of an area light
     uint64_t powers; ///< highlights computed (powers of a cosine)
     uint64_t sites; ///< sides of faces and vertices whose light was computed, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
     uint64_t patterns; ///< points at which a material's programs were run
-    uint64_t environment; ///< rays that left the scene, for which the background's program was run
+    uint64_t environment; ///< rays that left the scene, so that the background's program was run for them
     uint64_t overlaps; ///< tests of how much of a light a sphere or plane covers from a point, for caps
 } glint_work;
 
-/// Kinds of pattern results that no field accepts: NaN and numbers below 0 become 0, numbers above 2^100 become
-/// 2^100.
+/// Kinds of pattern results that are not valid for any field: NaN and numbers below 0 become 0, numbers above 2^100
+/// become 2^100.
 typedef enum glint_odd_kind { GLINT_ODD_NAN, GLINT_ODD_NEGATIVE, GLINT_ODD_HUGE, GLINT_ODD_COUNT } glint_odd_kind;
 
-/// How often a frame's patterns gave such a result, and where.
+/// How often a frame's patterns gave one kind of invalid result, and one place where they did.
 typedef struct glint_odd {
-    uint64_t count; ///< number of points; for the background, of directions
+    uint64_t count; ///< number of points with such a result; for the background, number of directions
     /// Field of one such result: static string, "diffuse"; "background" of the scene; NULL: there is none
     const char *field;
     char material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
@@ -1426,9 +1437,9 @@ typedef struct glint_frame_stats {
     double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
     /// Share of the stage's results taken from earlier frames: 0 all were computed, 1 none
     double stage_reused[GLINT_STAGE_MAX];
-    glint_ray_counts rays; ///< rays cast; reused stages cast none
-    glint_work work; ///< 0 unless the renderer counts work; reused results cost none
-    uint64_t refined; ///< pixels that took all samples with `adaptive`; else 0
+    glint_ray_counts rays; ///< rays cast; stages whose results are reused cast none
+    glint_work work; ///< work counters; 0 unless the renderer counts work; reused results cost none
+    uint64_t refined; ///< number of pixels that took all samples with `adaptive`; otherwise 0
     /// Pixels rendered; for a region, all pixels of the tiles that it touches. `clipped` and `nonfinite` count these
     uint64_t pixels;
     uint64_t clipped; ///< pixels with a channel above 1; 0 without pixel values
@@ -1453,9 +1464,9 @@ int glint_image_width(const glint_image *image);
 int glint_image_height(const glint_image *image);
 /// Returns whether the pass is stored; beauty may exist only as pixel values.
 bool glint_image_has_pass(const glint_image *image, glint_pass pass);
-/// Returns the name of derivative number `index`, from 0; owned by the image. NULL: it has fewer.
+/// Returns the name of derivative number `index`, from 0; owned by the image. NULL: the image has fewer derivatives.
 const char *glint_image_derivative(const glint_image *image, size_t index);
-/// Returns the name of light pass number `index`, from 0; owned by the image. NULL: it has fewer.
+/// Returns the name of light pass number `index`, from 0; owned by the image. NULL: the image has fewer passes.
 const char *glint_image_light_pass(const glint_image *image, size_t index);
 /// Returns whether all pixel values except alpha are 0; without pixel values, whether no value of beauty is above 0.
 /// Stops at the first other value. False if the image has neither.
@@ -1463,7 +1474,7 @@ bool glint_image_is_black(const glint_image *image);
 /// Returns the exposure, in stops, that the frame's pixel values have or would have.
 double glint_image_exposure(const glint_image *image);
 
-/// The brightness of pictures, summed up; starts as { 0 }.
+/// The brightness of several pictures together; starts as { 0 }.
 typedef struct glint_brightness {
     double most; ///< largest finite value of a channel, before exposure; 0: none is above 0
     uint64_t pictures; ///< number of images added
@@ -1471,12 +1482,12 @@ typedef struct glint_brightness {
     uint64_t clipped; ///< finite values that are above 1 after exposure
 } glint_brightness;
 
-/// Adds an image's linear beauty to *sum; counts clipping after `exposure` stops. GLINT_ERR_INVALID: it has no linear
-/// beauty.
+/// Adds an image's linear beauty to *sum; counts clipping after `exposure` stops. GLINT_ERR_INVALID: the image has no
+/// linear beauty.
 glint_status glint_image_brightness(const glint_image *image, double exposure, glint_brightness *sum, glint_error *error);
 /// Widens range[0] .. range[1] to the finite values of a pass: for depth, the nearest and farthest; for a derivative,
 /// plus and minus the largest slope of a channel. Starts as +inf, -inf. GLINT_ERR_INVALID: the image lacks that pass,
-/// or the pass is neither.
+/// or the pass is neither depth nor a derivative.
 glint_status glint_image_range(const glint_image *image, glint_pass pass, double range[2], glint_error *error);
 /// Returns the greatest exposure, in whole hundredths of a stop within GLINT_EXPOSURE_MAX, at which light of `most`
 /// does not exceed 1; 0 if `most` is 0. The same on every machine.
@@ -1540,8 +1551,9 @@ glint_status glint_image_to_bytes(const glint_image *image, const glint_write_de
 /// first, alpha 255 where the picture has none. Reads from `desc` the pass, the tone (8 bits), dpi and colormap.
 glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error);
 
-/// Writes the key of a finished frame: 32 hex digits, a hash of the engine version, all data that the plan reads, and
-/// of `desc` the tone, encode, encoder version and pass. Threads, instruction set, shard and path are not included.
+/// Writes the key of a finished frame: 32 hex digits, a hash of the engine version, all data that the plan reads, the
+/// encoder version, and the fields tone, encode and pass of `desc`. Threads, instruction set, shard and path are not
+/// included.
 void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
 /// Writes the key of the whole frame that a region belongs to; without a region, the frame's own key.
 void glint_whole_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
@@ -1549,8 +1561,9 @@ void glint_whole_key(const glint_plan *plan, const glint_write_desc *desc, char 
 /// Returns whether `path` is a complete PNG (every CRC right, IEND at the end) whose tEXt "glint:key" equals key.
 bool glint_file_has_key(const char *path, const char *key);
 
-/// Writes images on its own threads, in the order submitted, so that rendering, encoding and disk writes overlap. It
-/// stores the last compressed picture, about the size of its file, so that unchanged parts are not compressed again.
+/// Writes images on its own threads, in the order submitted, so that rendering, encoding and disk writes overlap. The
+/// writer keeps the last picture in compressed form, about as large as its file, so that unchanged parts are not
+/// compressed again.
 typedef struct glint_writer glint_writer;
 
 /// The result of one submitted file.
@@ -1559,16 +1572,17 @@ typedef struct glint_write_result {
     char message[512]; ///< "" on success; otherwise the file and the reason
     double encode_ms; ///< time from pixel values to bytes
     double write_ms; ///< time from bytes to a synced, renamed file
-    double reused; ///< share of the compressed bytes taken from the previous file, in bands of rows, 0 .. 1
+    double reused; ///< share of the compressed bytes that were taken from the previous file, band of rows by band of
+        ///< rows, 0 .. 1
     void *user; ///< the pointer submitted with the image
 } glint_write_result;
 
 /// Makes a writer.
 ///
-/// queue_depth  images that may wait, >= 1; a further submit blocks. Above 2, a renderer that is faster than the
-///              encoder finds no finished pictures whose memory it could reuse.
-/// threads      that encode one image together, 1 .. 1024; 0: one per processor; 1: only the writer's own thread.
-///              Files do not depend on it.
+/// queue_depth  number of images that may wait, >= 1; a further submit blocks. Above 2, a renderer that is faster than
+///              the encoder finds no finished pictures whose memory it could reuse.
+/// threads      number of threads that encode one image together, 1 .. 1024; 0: one per processor; 1: only the
+///              writer's own thread. The files do not depend on this number.
 glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error);
 /// Finishes the queue, then frees the writer. Results not collected are lost.
 void glint_writer_destroy(glint_writer *writer);
@@ -1584,16 +1598,16 @@ void glint_writer_cancel(glint_writer *writer);
 /// The difference of two pictures, over all pixels and channels.
 typedef struct glint_compare_result {
     int width, height, channels; ///< size in pixels and channels of both pictures
-    double mean_error, rms_error, peak_snr, max_error; ///< differences of values in 0 .. 1 (PNG) or linear values
+    double mean_error, rms_error, peak_snr, max_error; ///< differences of values, which are in 0 .. 1 (PNG) or linear
         ///< (PFM); peak signal-to-noise ratio
     int max_x, max_y, max_channel; ///< position of max_error, from 0
-    uint64_t failed, warned; ///< pixels whose difference exceeds the threshold `fail`, `warn`
+    uint64_t failed, warned; ///< number of pixels whose difference exceeds `fail`; number of those that exceed `warn`
     uint64_t pixels; ///< width x height
 } glint_compare_result;
 
 /// Thresholds of differences.
 typedef struct glint_compare_desc {
-    double fail, warn; ///< default 1e-6 as in idiff
+    double fail, warn; ///< default 1e-6, as in the program idiff
 } glint_compare_desc;
 
 /// Compares two .png or .pfm files. GLINT_ERR_INVALID if the sizes or channels differ (out->width is then -1),
@@ -1611,7 +1625,8 @@ typedef struct glint_picture_error {
     double rmse; ///< root of the mean squared difference of linear light, over pixels and channels
     double relmse; ///< mean of (x - r)^2 / (r^2 + 0.01)
     double max_code; ///< largest difference of pixel values, in steps of 8 bits; fractions at 16 bits
-    double over1, over8; ///< share of pixels with a channel that differs by more than 1 or 8 such steps
+    double over1, over8; ///< share of the pixels with a channel that differs by more than 1 such step, and by more
+        ///< than 8
     double flip; ///< mean LDR-FLIP, 0 .. 1 (Andersson et al. 2020), at 67 pixels per degree
 } glint_picture_error;
 
@@ -1642,7 +1657,8 @@ glint_status glint_reference_difference(const glint_reference *reference, const 
 
 // ---- Other strengths and colours of lights ---------------------------------------------------------------------------
 
-#define GLINT_LIGHT_OTHER "..." ///< name of the light in a file that none of its light passes holds
+/// name of the light pass for the light in a file that none of its light passes contains
+#define GLINT_LIGHT_OTHER "..."
 
 /// Reads a scan-line .exr with light passes: channels R, G and B of the picture, light.NAME.R, .G and .B of each
 /// pass, and A, if any. If the passes do not add up to the picture, beyond rounding, the rest becomes one more pass,
@@ -1694,8 +1710,9 @@ void glint_picture_destroy(glint_picture *picture);
 /// Size in pixels.
 int glint_picture_width(const glint_picture *picture);
 int glint_picture_height(const glint_picture *picture);
-int glint_picture_bits(const glint_picture *picture); ///< 8 or 16; 32 for a .pfm
-int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4; with 2 and 4, the last is alpha
+int glint_picture_bits(const glint_picture *picture); ///< bits per channel, 8 or 16; 32 for a .pfm
+int glint_picture_channels(const glint_picture *picture); ///< number of channels, 1 .. 4; with 2 and 4, the last
+    ///< channel is alpha
 /// Returns whether pixel values are sRGB or linear, by the gAMA and sRGB chunks; a .pfm is linear.
 glint_transfer glint_picture_transfer(const glint_picture *picture);
 /// Returns the value of a PNG's tEXt, as UTF-8; owned by the picture. NULL: there is none.
@@ -1709,7 +1726,7 @@ void glint_picture_light(const glint_picture *picture, int y, float *rgb);
 
 /// A finished part of a picture.
 typedef struct glint_picture_part {
-    const glint_picture *picture; ///< read with its pixels, of a .png with three or four channels
+    const glint_picture *picture; ///< a .png with three or four channels, read with its pixels
     int x, y; ///< position of its top left pixel in the whole picture
 } glint_picture_part;
 
@@ -1723,7 +1740,7 @@ glint_status glint_picture_join(const glint_picture_part *parts, size_t count, i
 
 /// One picture of a contact sheet. Strings are borrowed.
 typedef struct glint_sheet_cell {
-    const char *path; ///< a .png or .pfm, all of one size
+    const char *path; ///< path of a .png or .pfm; all cells have pictures of the same size
     const char *label; ///< UTF-8, parts separated by newlines, which share a line if they fit; NULL: none
 } glint_sheet_cell;
 
@@ -1732,14 +1749,14 @@ typedef struct glint_sheet_desc {
     const glint_sheet_cell *cells; ///< row by row
     size_t cell_count; ///< >= 1
     int columns; ///< >= 1
-    const char *title, *across, *down; ///< titles of the sheet, of its columns, of its rows; NULL: none
+    const char *title, *across, *down; ///< titles of the sheet, of its columns and of its rows; NULL: none
     /// Number of the cell, from 1, that each row is compared with in an extra row below it; 0: no such rows
     size_t difference;
     double gain; ///< factor applied to the differences; > 0
     /// Size of labels, in points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, or 26 below pictures at least 900 wide
     double size;
     double dpi; ///< pixels per inch for printing, 0 .. 1e6; 0: not set, and a point is a pixel
-    bool transparent; ///< transparent paper; pictures are drawn as on white
+    bool transparent; ///< the paper is transparent; pictures are drawn as on white
     /// A colour bar for all pictures, to their right, or below them if horizontal; NULL: none. It uses the fields of
     /// its kind, with `length` in points (default: as long as the pictures together, at most 20 times `size`), and
     /// the sheet's text size and ink

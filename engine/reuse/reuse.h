@@ -2,8 +2,8 @@
 ///
 /// Every stage has a key of exactly the data that it reads (plan/keys.c). The result of a stage is cached per tile
 /// once its key occurs again, in the last frame or in one of the frames before: a stage that differs in every frame
-/// is not worth the memory traffic. A cached result is used if its key equals the plan's, so a frame with reuse has
-/// the same bits as a frame without.
+/// is not worth the memory traffic. A cached result is used if its key equals the plan's key. So a frame with reuse
+/// has the same bits as a frame without reuse.
 ///
 /// Each tile also has a key of everything its pixels depend on: only the materials that it shows and the lights that
 /// reach it, without the highlight of a material if none is visible. If this key equals the key of the last frame,

@@ -1,8 +1,8 @@
 /// The font of texts, drawn by FreeType. Internal.
 ///
 /// The environment variable GLINT_FONT is the path of a font, or "bitmap". Without it, the font is DejaVu Sans, at the
-/// first of several system paths where it exists. Otherwise, or without FreeType in the build, it is the bitmap font of
-/// font.h.
+/// first of several system paths where it exists. If it exists at none of them, or if the build has no FreeType, the
+/// font is the bitmap font of font.h.
 #ifndef GLINT_TEXT_LETTERS_H
 #define GLINT_TEXT_LETTERS_H
 
