@@ -80,7 +80,8 @@ static glint_status render_in_place(glint_renderer *renderer, const glint_plan *
 
 // ---- The frame ----
 
-/// Adds the work and time of the base, of which compare_ms was spent on comparing pixels, and of the choice after it.
+/// Adds the work and time of the base and of the choice after the base. compare_ms: the part of the base's time that
+/// was spent on comparing pixels.
 static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms,
                      double compare_ms, bool time_stages)
 {
@@ -88,7 +89,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
     glint_frame_stats_add(to, base, pixels / all);
     to->render_ms += choose_ms;
-    if (!glint_plan_compares_codes(&plan->desc)) { // then the pixel values are those of the picture
+    if (!glint_plan_compares_codes(&plan->desc)) { // then the base's pixel values are the picture's
         to->render_ms -= base->tone_ms;
         to->tone_ms += base->tone_ms;
     }
@@ -97,7 +98,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
             to->stage_ms[i] = choose_ms + compare_ms;
 }
 
-/// Returns the time spent on comparing, as its share in the time of the last tiles, if stages are timed.
+/// Returns the time that the last tiles spent on comparing pixels. Only known if stages are timed.
 static double comparing_ms(const glint_renderer *renderer)
 {
     double ms = 0;
@@ -113,7 +114,7 @@ static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan
 {
     const double compare_ms = comparing_ms(renderer), start = glint_frame_now_ms();
     const glint_extent extent = glint_plan_extent(&plan->desc);
-    renderer->refine->base = base; // it may be the last frame's
+    renderer->refine->base = base; // `base` may be the base of the last frame
     glint_refine_choose(renderer->refine, &extent, plan->lens != NULL, renderer->pool);
     const double choose_ms = glint_frame_now_ms() - start;
     const glint_status status = glint_renderer_run(renderer, plan, image, base, table, stats, error);
@@ -125,8 +126,8 @@ static glint_status refine_base(glint_renderer *renderer, const glint_plan *plan
     return GLINT_OK;
 }
 
-/// The base is rendered into the frame's own picture if nothing of it is cached: without reuse, in the first frame,
-/// and if so much has changed since the last frame that few of its pixels can stay.
+/// The base is rendered into the frame's own picture if no pixel of the base is cached: without reuse, in the first
+/// frame, and if so much has changed since the last frame that few pixels can stay.
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {

@@ -13,12 +13,13 @@
 
 #define GLINT_REFINE_SPREAD 2 ///< pixels, in every direction
 
-/// Called before a base is rendered into `image`, which must live until the choice. `desc`: of the base, with the
-/// threshold. Allocates its tiles; existing tiles keep their keys. GLINT_ERR_NOMEM.
+/// Called before a base is rendered into `image`, which must live until the choice. `desc`: the description of the
+/// base, with the threshold. Allocates the base's tiles; existing tiles keep their keys. GLINT_ERR_NOMEM.
 glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
                                 const glint_render_desc *desc, glint_error *error);
-/// Called after that: collects the results of the tiles, compares pixels across borders of tiles, and sets `count`.
-/// lens: also chooses pixels around the chosen ones. The result does not depend on the number of threads.
+/// Called after the base is rendered: collects the results of the tiles, compares pixels across borders of tiles, and
+/// sets `count`. lens: also chooses pixels around the chosen ones. The result does not depend on the number of
+/// threads.
 void glint_refine_choose(glint_refine *refine, const glint_extent *extent, bool lens, glint_pool *pool);
 /// Frees what it owns. Zeroed memory is a valid initial state.
 void glint_refine_clear(glint_refine *refine);

@@ -122,7 +122,7 @@ static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, con
     place_pixels(tile, slots, count, (const double(*)[GLINT_LIGHT_CHUNK])offset, samples, tile->gathered->pixel);
     tile->camera.groups_across = 1;
     tile->camera.group_count = (count * samples + GLINT_GROUP - 1) / GLINT_GROUP;
-    tile->camera.offset[0] = tile->camera.offset[1] = 0; // they are in the pixels' positions
+    tile->camera.offset[0] = tile->camera.offset[1] = 0; // the positions of the pixels already contain the offsets
     tile->camera.down = tile->rays.direction;
     glint_tile_make_rays(tile, frame);
 }

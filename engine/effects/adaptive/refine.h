@@ -26,13 +26,13 @@ typedef struct glint_refine_range {
 } glint_refine_range;
 
 typedef struct glint_refine_tile {
-    uint64_t pixels; ///< stamp of the base's pixels that were compared, see glint_film_stamp; 0: unknown
+    uint64_t pixels; ///< stamp of the compared pixels of the base, see glint_film_stamp; 0: unknown
     // Chosen pixels, for each row from the top: one bit per pixel, the leftmost lowest.
     uint32_t inside[GLINT_TILE_HEIGHT]; ///< pixels that differ from another one of the tile
     uint32_t chosen[GLINT_TILE_HEIGHT]; ///< pixels that differ from any other
-    uint32_t above; ///< of the first row: pixels that differ from one in the tiles above
+    uint32_t above; ///< pixels of the first row that differ from one in the tiles above
     uint64_t clipped, nonfinite; ///< counts of the base's pixels, if it has pixel values
-    glint_refine_range range; ///< of all pixels
+    glint_refine_range range; ///< the range of all pixels
     bool ranged; ///< `range` is known
     /// The compared values of the first and last column; light if pixel values are estimated
     float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH];
@@ -49,7 +49,7 @@ typedef struct glint_refine {
     glint_tone_desc tone; ///< of the pixel values
     uint32_t least; ///< sum of differences of pixel values up to which pixels are equal
     float low, high, gain; ///< see glint_differ_args, glint_estimate_args
-    glint_refine_tile *tiles; ///< of the whole picture, left to right, top to bottom
+    glint_refine_tile *tiles; ///< the tiles of the whole picture, left to right, top to bottom
     uint32_t across, down; ///< tiles in each direction
     float *edges; ///< owned, like `tiles`; see glint_refine_edge
     size_t edge_length; ///< numbers per line
@@ -66,7 +66,7 @@ static inline float *glint_refine_edge(const glint_refine *refine, uint32_t row,
 /// Two lines of the base.
 typedef struct glint_refine_lines {
     glint_differ_args args; ///< lines and counts
-    const float *light[2][3]; ///< of their pixels, if pixel values are estimated
+    const float *light[2][3]; ///< light of the pixels, if pixel values are estimated
     bool grouped; ///< four pixels of each group are contiguous: the lines are rows of a tile; otherwise all pixels are
         ///< contiguous
 } glint_refine_lines;
@@ -74,7 +74,7 @@ typedef struct glint_refine_lines {
 /// Returns whether no two pixels in these ranges can differ.
 bool glint_refine_similar(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b);
 
-/// Computes which of their pixels differ, as in glint_differences.
+/// Computes which pixels of two lines differ, as glint_differences does.
 void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines,
                           uint32_t differ[GLINT_DIFFER_DIRECTIONS]);
 

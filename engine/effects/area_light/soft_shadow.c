@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/// Returns whether only the sum of the samples is read: no caching, no counting of work, nothing that distinguishes
-/// them.
+/// Returns whether only the sum of the samples is read: no sample is cached or counted, and nothing reads single
+/// samples.
 static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                       uint32_t count)
 {

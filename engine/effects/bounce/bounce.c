@@ -88,7 +88,7 @@ static uint32_t depth_at(const struct glint_bounce *bounce, const glint_tile *ti
     return tile == &bounce->batch.tile ? bounce->batch.rays->depth[bounce->batch.ray_of[i]] : 0;
 }
 
-/// Returns how many translucent surfaces that ray went straight through.
+/// Returns the number of translucent surfaces that the ray to sample i went straight through.
 static uint32_t passes_at(const struct glint_bounce *bounce, const glint_tile *tile, uint32_t i)
 {
     return tile == &bounce->batch.tile ? bounce->batch.rays->passes[bounce->batch.ray_of[i]] : 0;
@@ -127,8 +127,7 @@ typedef struct parting {
 
 static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
 
-/// Returns whether a ray must be followed. If not, subtracts the light that it could have contributed from the
-/// budget.
+/// Returns whether a ray must be followed. Otherwise subtracts the ray's largest possible light from the budget.
 static bool matters(const glint_plan *plan, const double weight[3], double *budget)
 {
     double most = weight[0]; // none is NaN
@@ -271,8 +270,8 @@ static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, con
     end_sending(bounce, tile, frame, 0);
 }
 
-/// Sends on rays from the hits of the batch, in the order of its rays; `level` is where these were, and is empty like
-/// the levels above.
+/// Sends on rays from the hits of the batch, in the order of its rays; `level` is the level of these rays, which is
+/// empty by now, like the levels above.
 static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, uint32_t level)
 {
     const glint_batch *batch = &bounce->batch;

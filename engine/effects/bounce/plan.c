@@ -4,7 +4,7 @@
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
 
-/// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
+/// Larger strengths are white in any film. The product of two strengths below this limit is finite.
 #define STRENGTH_MAX 1e150
 
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
@@ -53,7 +53,7 @@ static double gain(const glint_bounce_material *m)
     return opaque(m, most);
 }
 
-/// Returns the same for any ray: total reflection does not dim.
+/// Returns the bound for any ray, including total reflection, which does not dim.
 static double gain_anywhere(const glint_bounce_material *m)
 {
     return m->transmits && !m->fresnel ? fmax(gain(m), 1) : gain(m);
@@ -71,7 +71,7 @@ static double most_diffuse(const glint_plan *plan, uint32_t i)
     return most_of(plan, i, GLINT_FIELD_DIFFUSE) * brightest_of(glint_plan_diffuse(plan, i));
 }
 
-/// Returns the same for material number i of a plan.
+/// Returns the bound of `opaque` for material number i of a plan.
 static double as_opaque(const glint_plan *plan, uint32_t i, double bound)
 {
     return plan->bouncing ? opaque(&plan->bouncing[i], bound) : bound;
@@ -103,7 +103,7 @@ static double surface_light(const glint_plan *plan, uint32_t i)
     return as_opaque(plan, i, sum);
 }
 
-/// Returns the same over all surfaces, visible lights and the background.
+/// Returns a bound of the light of all surfaces, visible lights and the background.
 static double brightest_surface(const glint_plan *plan)
 {
     double most = plan->environment ? plan->environment->most : brightest_of(plan->background);

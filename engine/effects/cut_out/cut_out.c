@@ -18,7 +18,7 @@
 #define HOLES_MAX 4096 ///< holes that one ray passes; the next one is hit
 
 struct glint_cut_out {
-    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES]; ///< real, like all arrays that kernels read
+    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES]; ///< type: real, like all arrays that kernels read
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
@@ -94,7 +94,7 @@ static bool choose_cut(struct glint_cut_out *cut, const glint_tile *tile, const 
     return any;
 }
 
-/// Selects those of cut->hits that are holes. seen: the hits are those of the tile's rays.
+/// Selects the lanes of cut->hits whose points are in holes. seen: the hits are hits of the tile's own rays.
 static void find_holes(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, bool seen)
 {
     glint_surface_args surfaces = { .group_count = tile->group_count,
@@ -228,7 +228,7 @@ static bool begin_seeing(struct glint_cut_out *cut, const glint_tile *tile, cons
 static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const bool eye = tile->batch == NULL; // its rays do not leave a surface
+    const bool eye = tile->batch == NULL; // the eye's rays do not start on a surface
     for (uint32_t g = 0; g < tile->group_count; g++) {
         for (unsigned bits = cut->holes[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
@@ -271,9 +271,9 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
 }
 
 /// Computes the distance of primitive `prim`, which the lanes in `active` see through holes, from the origins of
-/// their rays. The candidates are the first hit on it and the other one; the nearer to the known distance is taken.
-/// For a sphere, whose point is exact from any distance, and for a torus, which may be hit twice more, it must be
-/// within rounding of the known one.
+/// their rays. The candidates are the first and the second hit on the primitive. The candidate nearer to the known
+/// distance is taken. For a sphere, whose point is exact from any distance, and for a torus, which may have two more
+/// hits, the candidate must be within rounding of the known distance.
 static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, uint32_t prim,
                             double off[GLINT_TILE_SAMPLES])
 {
@@ -298,7 +298,7 @@ static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const g
     take_nearer(cut, tile, frame, any, off);
 }
 
-/// Does the same for all surfaces seen through holes.
+/// Calls see_from_origin for all surfaces seen through holes.
 static void see_all_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame)
 {
     double off[GLINT_TILE_SAMPLES];
@@ -429,8 +429,8 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
     return any;
 }
 
-/// After occlude: opens lit points that are only occluded by surfaces with holes in these places. middle: towards the
-/// light's centre, for all samples.
+/// After occlude: opens lit points that are only occluded by surfaces that have holes at the occluding hits. middle:
+/// towards the light's centre, for all samples.
 static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                        uint16_t *unoccluded)
 {

@@ -13,7 +13,7 @@
 struct glint_depth_cue {
     double total[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES]; ///< over the finished samples
     double transmittance[3][GLINT_TILE_SAMPLES]; ///< remaining share of the light in each pixel of the current sample
-    double share[GLINT_TILE_SAMPLES]; ///< share of the colour there
+    double share[GLINT_TILE_SAMPLES]; ///< share of the cue's colour in each pixel of the current sample
 };
 
 static void *create(const glint_plan *plan)

@@ -22,7 +22,7 @@ typedef struct bent_hit {
 
 // ---- Normals of curved surfaces -------------------------------------------------------------------------------------
 
-/// Computes the slope of a normalised vector whose original has the length `length` and the slope `change`.
+/// Computes the slope of a normalised vector. length, change: length and slope of the vector before normalisation.
 static void turn_unit(const double unit[3], double length, const double change[3], double out[3])
 {
     const double along = vec_dot(unit, change);
@@ -236,7 +236,7 @@ static void bend_view(const glint_tile *tile, const glint_plan *plan, const glin
     }
 }
 
-/// Computes the slopes of a hit seen by a ray that left a surface. Returns false if the ray does not move it.
+/// Computes the slopes of a hit seen by a ray that left a surface. Returns false if the ray does not move the hit.
 static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t index, uint32_t i, const double eye[3],
                      bent_hit *hit, glint_bend *out)
 {
@@ -372,8 +372,8 @@ static unsigned bend_each(const glint_tile *tile, const glint_tile_frame *frame,
     return bent;
 }
 
-/// Prepares those of `lanes` that hit the same primitive as the first one. Returns these lanes. *moves: they move;
-/// *seen: the kernel bends them, otherwise they are bent one by one.
+/// Prepares the lanes that hit the same primitive as the first of `lanes`, and returns them. *moves: whether their
+/// hits move; *seen: whether the kernel bends the hits; otherwise they are bent one by one.
 static unsigned begin(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g, unsigned lanes,
                       const glint_derivative_points *points, bend_buffers *out, bool *seen, bool *moves)
 {

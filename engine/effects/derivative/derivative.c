@@ -44,7 +44,7 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
     frame->stages->eyes(&args);
 }
 
-/// Returns those lanes of `rest` in group g that have the same material as the first one.
+/// Returns the lanes of `rest` in group g with the same material as the first of these lanes.
 static unsigned lanes_of_material(const glint_tile *tile, uint32_t g, unsigned rest, uint32_t *material)
 {
     const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
@@ -158,7 +158,8 @@ static void take_field(const glint_tile *tile, const glint_plan *plan, size_t in
     }
 }
 
-/// Returns the planes of a material in group g for derivative number `index`. NULL: it has only numbers.
+/// Returns the planes of a material in group g for derivative number `index`. NULL: all fields of the material are
+/// constants.
 static const glint_derivative_planes *planes_of(const glint_tile *tile, const glint_plan *plan, size_t index,
                                                 uint32_t material, uint32_t g, glint_derivative_planes *buffer)
 {
@@ -177,8 +178,8 @@ static const glint_derivative_planes *planes_of(const glint_tile *tile, const gl
     return buffer;
 }
 
-/// Returns a program's result for the ambient reflectance of sample i in channel c; 1 if the material has only a
-/// number.
+/// Returns a program's result for the ambient reflectance of sample i in channel c; 1 if the material's ambient
+/// reflectance is a constant.
 static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
 {
     const uint32_t planes = plan->materials[tile->surface.material[i]].planes;
@@ -279,7 +280,7 @@ static bool moves(const glint_plan_derivatives *all, uint32_t source)
     return any;
 }
 
-/// Records the lanes above the horizon of a light that it does not reach.
+/// Records the shadowed lanes of a light: above the horizon, but not reached by the light.
 static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32_t g, unsigned lit, unsigned unoccluded)
 {
     glint_derivative_work *work = glint_derivative_of(tile);

@@ -107,7 +107,7 @@ static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field
     return any;
 }
 
-/// Stores the slopes of one entry, number e of its call. A value that was clamped to 0 has the slope 0, and so has a
+/// Stores the slopes of one entry, number e of its call. The slope is 0 for a value that was clamped to 0, and for a
 /// value without a slope, such as the root of a constant 0.
 static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t index, int field, bool one, bool bounded,
                        const glint_pattern_lanes *entry, uint32_t e)

@@ -28,7 +28,7 @@ typedef struct glint_plan_derivative {
     glint_derivative_part *parts; ///< one for each part of the geometry
     glint_derivative_view view;
     struct {
-        double color[3], near, far; ///< as in glint_plan
+        double color[3], near, far; ///< slopes of the fields of the same names in glint_plan
     } fade; ///< slopes of a depth cue
     double background[3]; ///< slopes
     bool moves; ///< some shadow moves

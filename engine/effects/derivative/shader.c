@@ -332,7 +332,7 @@ static bool sweep(const shading *s, size_t index, const glint_program *forward)
     return !odd;
 }
 
-/// Does the same for one or all derivatives, by the gradient and the shader's own numbers.
+/// Adds one or all derivatives of the light, by the gradient and by the shader's own numbers.
 static void derive_exactly(const shading *s, size_t from, size_t to)
 {
     const glint_plan_derivatives *all = s->frame->plan->derivatives;

@@ -6,9 +6,9 @@
 
 /// The slopes of a derivative in the form of descriptions: each number is the derivative of the description's number.
 typedef struct glint_scene_slopes {
-    glint_material_desc *materials; ///< in the order of the geometry
-    glint_light_desc *lights; ///< in the order of the scene
-    glint_shape_desc *shapes; ///< one for each part of the geometry
+    glint_material_desc *materials; ///< slopes of the materials, in the order of the geometry
+    glint_light_desc *lights; ///< slopes of the lights, in the order of the scene
+    glint_shape_desc *shapes; ///< slopes of the shapes, one for each part of the geometry
     glint_camera_desc camera;
     glint_scene_desc scene;
     glint_derivative_programs *programs; ///< as in glint_plan_derivative

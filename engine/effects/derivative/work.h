@@ -35,8 +35,8 @@ typedef struct glint_derivative_work {
         ///< this one
     uint32_t first[GLINT_TILE_SAMPLES];
     uint16_t occluded[GLINT_TILE_GROUPS],
-        unoccluded[GLINT_TILE_GROUPS]; ///< lanes that some samples of the current light do not
-        ///< reach, and do reach
+        unoccluded[GLINT_TILE_GROUPS]; ///< lanes that some samples of the current light leave dark
+        ///< and lanes that some samples reach
     uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches partly
 } glint_derivative_work;
 
@@ -63,7 +63,7 @@ static inline bool glint_derivatives_read_light(const glint_tile *tile, const gl
     return (tile->batch || plan->runs[GLINT_STAGE_DEPTH_CUE]) && glint_derivatives_weigh(plan->derivatives);
 }
 
-/// Returns those of `lanes` whose number in `of` equals that of the first one.
+/// Returns the lanes of `lanes` whose number in `of` equals the number of the first of these lanes.
 static inline unsigned glint_lanes_equal(const uint32_t of[GLINT_GROUP], unsigned lanes)
 {
     const uint32_t first = of[__builtin_ctz(lanes)];

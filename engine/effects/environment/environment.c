@@ -139,8 +139,8 @@ static void note_odd(glint_tile *tile, const struct glint_environment *environme
     }
 }
 
-/// Loads the light of group `from` of the rows, 0 in other lanes. channels: the number that the program computes; one
-/// stands for all.
+/// Loads the light of group `from` of the rows, 0 in other lanes. channels: the number of channels that the program
+/// computes; a single channel is used for all three.
 static void light_of(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
                      unsigned lanes, double light[3][GLINT_GROUP])
 {

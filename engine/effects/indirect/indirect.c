@@ -2,11 +2,11 @@
 /// their cosine. The mean light of these paths, times kd, is the indirect light of the point.
 ///
 /// Paths do not branch. Where a path hits a surface, it takes the light that the lamps send there, and continues in
-/// one of the directions that the surface sends light to: scattered, mirrored, refracted or straight on, chosen with
-/// a probability proportional to their shares, by which the light is divided. So the memory is a batch and three sets
-/// of rays, however long paths are. The light of a path depends on its pixel, on the numbers of its sample and of its
-/// steps, and on the seed. Paths stay in the lane of their point, because the lane selects the point of an area
-/// light.
+/// one direction: scattered, mirrored, refracted or straight on. The direction is chosen with a probability
+/// proportional to its share of the light, and the light is divided by this probability. So the memory is one batch
+/// and three sets of rays, however long paths are. The light of a path depends on its pixel, on the numbers of its
+/// sample and of its steps, and on the seed. Paths stay in the lane of their point, because the lane selects the
+/// point of an area light.
 ///
 /// At each point, a path takes one sample of an area light, a different one for each path. Light that is computed at
 /// each point must not be hit by chance as well, or it would count twice: paths do not see lamps, even if the eye
@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GOLDEN 0x1.9e3779b97f4a8p-1 ///< multiples of it, without their integer part, fill 0 .. 1 evenly from the first
+#define GOLDEN 0x1.9e3779b97f4a8p-1 ///< golden ratio: fractional parts of its multiples fill 0 .. 1 evenly
     ///< on
 #define STRENGTH_MAX 1e150
 
@@ -282,7 +282,7 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
             to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * background[c];
 }
 
-/// Does the same for a background computed by a program.
+/// Adds the background of missed rays if a program computes the background.
 static void collect_shown(const glint_batch *batch, const uint16_t *missed, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;

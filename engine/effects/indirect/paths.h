@@ -16,11 +16,11 @@ struct glint_indirect {
     glint_batch batch;
     glint_plan plan; ///< the frame's plan, with one sample of each light and without visible lights
     glint_tile_frame frame; ///< the frame with this plan
-    glint_plan_light *lights; ///< of that plan; NULL: there are none
+    glint_plan_light *lights; ///< lights of `plan`; NULL: there are none
     uint32_t paths[GLINT_TILE_SAMPLES], fewest; ///< number of paths of each point, and the least of these
     uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that have paths
     uint64_t
-        block[GLINT_TILE_SAMPLES]; ///< number of the 4 x 4 pixels of each point and of its sequence of mirrors
+        block[GLINT_TILE_SAMPLES]; ///< number of each point's pixel_block
     uint32_t lane[GLINT_TILE_SAMPLES]; ///< index of the pixel in its block
     draws first_draws, next_draws; ///< for the points, and for the hits of their paths
     glint_rays first; ///< the first ray of each point, by number; equal for all paths except for its direction

@@ -17,9 +17,9 @@ typedef double term_sums[SUMS][3][GLINT_TILE_SAMPLES];
 struct glint_group_sums {
     _Alignas(64) double local[GLINT_TERM_LOCAL][3][GLINT_TILE_SAMPLES]; ///< terms of one call of shade without lights
     uint32_t count, pass_count;
-    term_sums *sum; ///< of each group
+    term_sums *sum; ///< sums of each group
     double (*faded)[3][GLINT_TILE_SAMPLES]; ///< for each group, over the finished samples; NULL: nothing fades
-    float (*mean)[3][GLINT_TILE_SAMPLES]; ///< of each pass
+    float (*mean)[3][GLINT_TILE_SAMPLES]; ///< mean light of each pass
     struct glint_group_sums *batch,
         *points; ///< sums of rays that left surfaces, and of faces and vertices; owned by the tile's sums
 };
@@ -69,7 +69,7 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
     if (plan->runs[GLINT_STAGE_VERTEX])
         good = (sums->points = create(groups->count)) && good;
     if (sums->batch)
-        sums->batch->points = sums->points; // used by batches, too
+        sums->batch->points = sums->points; // batches use `points`, too
     if (good)
         return sums;
     glint_group_sums_destroy(sums);
@@ -268,7 +268,7 @@ static void take_light(const struct glint_group_sums *sums, uint32_t group, int 
         light[i] = (diffuse[i] + specular[i]) + other[i];
 }
 
-/// Adds this light to the light of all lamps. mean: of the group's pass; NULL: it has none.
+/// Adds this light to the light of all lamps. mean: the plane of the group's pass; NULL: the group has no pass.
 static void add_light(const double *restrict light, uint32_t count, double samples, double *restrict lamps,
                       float *restrict mean)
 {

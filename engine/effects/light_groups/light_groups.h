@@ -20,7 +20,7 @@ struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points);
 /// Clears a tile's sums. Then, for each call of shade, adds the light of its lights, and the lights' share of ambient
 /// light if it has `first`.
 void glint_groups_begin(glint_tile *tile, const glint_plan *plan);
-/// The lights of the call are `count` rows of the plan from row `from` on, by glint_tile_shade_args; or all of one
+/// The call's lights are `count` rows of the plan from row `from` on, as in glint_tile_shade_args, or all of one
 /// group.
 void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
                         uint32_t count);
@@ -33,7 +33,7 @@ void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const 
 /// In frames with light passes: adds the light of sample `at` of a batch, times a weight, to pixel `pixel` of `to`.
 void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to, uint32_t at, uint32_t pixel,
                           const double weight[3]);
-/// Likewise: adds the lights' share of ambient light to a pixel.
+/// In frames with light passes: adds the lights' share of ambient light to a pixel.
 void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint32_t pixel, int c, double light);
 /// Fades the sums of the current sample, in each pixel and channel; see effects/depth_cue/.
 void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,

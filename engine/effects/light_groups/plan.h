@@ -10,9 +10,9 @@
 /// Light is also summed for each group of lights. Passes come first among the groups. If the rest is requested, all
 /// lights without a pass form one more group.
 struct glint_light_groups {
-    uint32_t pass_count, count; ///< passes of the frame; groups
+    uint32_t pass_count, count; ///< number of passes of the frame; number of groups
     uint32_t rest; ///< the pass of the rest, whose group stays empty; GLINT_NO_GROUP: none
-    char (*name)[GLINT_NAME_SIZE]; ///< of each pass
+    char (*name)[GLINT_NAME_SIZE]; ///< name of each pass
     char *list; ///< the names, separated by commas
     uint32_t *of_light; ///< the group of each light of the scene, or GLINT_NO_GROUP
     double (*ambient)[3]; ///< for each group, its lights' share of the plan's ambient light

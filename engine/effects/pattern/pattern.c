@@ -126,7 +126,7 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
     const uint32_t *material = points->material, group_count = points->group_count;
     glint_pattern_lanes *entries = pattern->lanes;
     uint32_t count = 0, last = GLINT_MISS;
-    bool wanted = false, several = false; // whether material `last` is wanted; whether there were others
+    bool wanted = false, several = false; // wanted: material `last` is wanted; several: there were other materials
     if (points->only) {
         list_one_material(pattern, patterns, points, wants);
         return;

@@ -47,7 +47,7 @@ uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
 bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame);
 /// Writes the listed lanes of each group.
 void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS]);
-/// Sets the planes of sample k to their place in the cache. Returns whether they are there already.
+/// Points the planes of sample k to their slot in the cache. Returns whether the slot already has their values.
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// kept.c: for the lanes listed by glint_tile_find_painted, if the results of the programs' first parts are cached
 /// for sample k: runs the second parts into the tile's planes. Returns false if nothing is cached or an error needs
@@ -59,9 +59,9 @@ void glint_tile_cache_pattern(glint_tile *tile, const glint_tile_frame *frame, u
 /// Runs the programs of the lanes listed by glint_tile_find_painted into the tile's planes, and counts the stage. The
 /// points must be known, and the normals if programs read them.
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame);
-/// Does both for all hits, if any of their materials has programs.
+/// Lists the lanes of all hits and runs their programs, if any of the materials has programs.
 void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame);
-/// The same for other points. Returns whether any material has programs.
+/// Lists and runs the programs of points outside a tile. Returns whether any material has programs.
 bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts);
 
@@ -105,7 +105,7 @@ bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t 
 typedef struct glint_shader_light {
     const glint_plan_light *light;
     const uint16_t *lit; ///< one bit per lane
-    const float *weight[3]; ///< factor of its colour, per channel; NULL: 1
+    const float *weight[3]; ///< factor of the light's colour, per channel; NULL: 1
     const float *visible; ///< visible share, times the weight of red; NULL: 1
 } glint_shader_light;
 

@@ -9,7 +9,7 @@
 /// The fields that a program can compute. The first ones have planes: one float per sample, or three for a colour.
 typedef enum glint_field {
     GLINT_FIELD_DIFFUSE,
-    GLINT_FIELD_AMBIENT, ///< if it is neither a number nor equal to diffuse: see glint_plan_find_indirect
+    GLINT_FIELD_AMBIENT, ///< has planes unless constant or equal to diffuse: see glint_plan_find_indirect
     GLINT_FIELD_REST, ///< the part of a program's ambient that indirect light replaces; not a field of a material
     GLINT_FIELD_SPECULAR,
     GLINT_FIELD_MIRROR,

@@ -59,7 +59,7 @@ bool glint_pattern_next(struct glint_pattern *pattern, const glint_tile_frame *f
 void glint_pattern_run_batch(struct glint_pattern *pattern, const glint_tile_frame *frame,
                              const glint_pattern_points *points, glint_pattern_batch *batch, glint_tile_counts *counts);
 /// Sets the batch's outputs to the planes of a field. Returns the program; if the program gives one number for
-/// several planes, a copy in `buffer` that gives it for each plane.
+/// several planes, returns a copy in `buffer` that repeats the number per plane.
 const glint_program_code *glint_pattern_point_planes(glint_pattern_batch *batch, const glint_tile_frame *frame,
                                                      const glint_pattern_points *points, int field,
                                                      const glint_program_code *code, glint_program_code *buffer);
@@ -77,8 +77,8 @@ void glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_pa
 /// Takes the first remaining entry and the following ones with the same material off the list, as many as fit into
 /// one call. Returns their number; 0 if the list is empty.
 uint32_t glint_pattern_take(struct glint_pattern *pattern, const glint_pattern_lanes **entries);
-/// shader.c: lists those of `lanes` (one bit each) whose materials have shaders. Returns the points with the normals
-/// for shaders.
+/// shader.c: lists the lanes of `lanes` (one bit each) whose materials have shaders. Returns the points with the
+/// normals for shaders.
 glint_pattern_points glint_shader_find_lanes(const glint_tile *tile, const glint_plan *plan, const uint16_t *lanes);
 /// Gathers the inputs of a shader for some entries and their material. The caller sets the inputs in `known` (one bit
 /// each).

@@ -9,7 +9,7 @@
 #define CHUNK 16384u ///< triangles that one worker projects at a time
 #define ENTRIES_MAX ((size_t)1 << 25) ///< 400 MB
 #define COUNTS_MAX ((size_t)1 << 24)
-#define BUCKETS 64 ///< of depth, when a tile's entries are put in order
+#define BUCKETS 64 ///< number of depth intervals for sorting a tile's entries
 
 /// The picture plane for projection.
 typedef struct picture {
@@ -18,7 +18,7 @@ typedef struct picture {
     double per_right, per_up; ///< 1 / length^2
     double unit[2]; ///< 1 / length: how many half pixels a world unit is at distance 1
     double low[2], high[2]; ///< range of sample positions within a pixel, across and down
-    double rounding; ///< of one operation
+    double rounding; ///< relative rounding error of one operation
     bool is_float;
 } picture;
 
@@ -33,8 +33,8 @@ typedef struct scanning {
     const glint_geometry_table *geometry;
     uint32_t across; ///< tiles
     size_t tile_count, chunk_count;
-    extent *extents; ///< of each primitive
-    uint32_t *counts; ///< entries of each tile, chunk after chunk; then the position of the chunk's first entry of the
+    extent *extents; ///< pixels of each primitive
+    uint32_t *counts; ///< number of entries per chunk and tile; then the position of the chunk's first entry of the
         ///< tile
     glint_raster *raster;
 } scanning;

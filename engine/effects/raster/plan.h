@@ -12,9 +12,9 @@ typedef struct glint_raster {
     bool on; ///< for this frame
     double ms; ///< time of finding the entries
     bool rest; ///< other primitives must be cast as well
-    glint_geometry_table others; ///< these, with their own index
+    glint_geometry_table others; ///< the other primitives, with their own index
     size_t tile_count, tile_capacity, entry_capacity;
-    size_t *first; ///< of each tile, its first entry, and one more
+    size_t *first; ///< index of each tile's first entry, and the end of the last
     glint_raster_entry *entries; ///< tile after tile, the nearer first
 } glint_raster;
 

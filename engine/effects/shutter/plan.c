@@ -1,8 +1,8 @@
 /// A frame with an open shutter: the mean of its light at several times.
 ///
 /// Light adds up. If only lights differ between the times, the frame is one plan, which contains a changing light
-/// once for each time with its share of the strength; nothing else is done twice. If surfaces, materials or the
-/// camera differ, each time is rendered, and effects/shutter/shutter.c takes the mean, also of derivatives.
+/// once for each time, with a share of its strength. No other work is repeated. If surfaces, materials or the camera
+/// differ, each time is rendered, and effects/shutter/shutter.c takes the mean, also of derivatives.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROWS_MAX 0x1p27 ///< for all times; the same limit for light samples
+#define ROWS_MAX 0x1p27 ///< maximum number of light rows for all times, and of light samples
 
 glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
 {

@@ -23,8 +23,8 @@ typedef struct exposure {
     mean *means; ///< owned
     size_t mean_count;
     glint_image *image;
-    const glint_image *part; ///< of one time
-    double *sums; ///< of all means
+    const glint_image *part; ///< the image of one time
+    double *sums; ///< sums of all means
     const float *beauty[3], *alpha; ///< the source of pixel values: planes of the image, or
     float *own; ///< owned: planes that the image does not have
     const glint_tone_table *table;

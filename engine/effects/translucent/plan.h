@@ -28,7 +28,8 @@ struct glint_plan;
 glint_status glint_plan_find_translucent(struct glint_plan *plan, glint_error *error);
 /// Frees plan->translucent.
 void glint_plan_translucent_free(struct glint_plan *plan);
-/// Returns a material of the geometry's list as the frame reads it. It lasts as long as the plan and the material.
+/// Returns a material of the geometry's list as the frame reads it. The description lasts as long as the plan and the
+/// material.
 const glint_material_desc *glint_plan_material(const struct glint_plan *plan, size_t index);
 
 #endif

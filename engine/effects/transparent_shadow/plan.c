@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/// Bound of the error of a ray's points, relative to the lengths that it is computed from, in either precision, with
-/// a margin for the rounding of the test below.
+/// Bound of the error of a point on a ray, in either precision, relative to the lengths that the point is computed
+/// from, with a margin for the rounding of the test below.
 #define SLACK 0x1p-20
 
 // ---- Balls ----
@@ -22,7 +22,7 @@ static bool transmits(const glint_plan *plan, const glint_geometry_table *table,
     return false;
 }
 
-/// A box around primitives, and the only one in it; `only` NULL: there are several.
+/// A box around primitives. `only`: the single primitive in the box; NULL: there are several.
 typedef struct tint_box {
     double lower[3], upper[3];
     const glint_prim *only;

@@ -14,8 +14,8 @@ typedef struct glint_ball {
 /// Balls around all transparent primitives of a frame.
 typedef struct glint_tints {
     uint32_t count;
-    bool everywhere; ///< some of them are unbounded: the balls are not used
-    double extent; ///< of the geometry
+    bool everywhere; ///< some transparent primitives are unbounded: the balls are not used
+    double extent; ///< extent of the geometry
     glint_ball of[GLINT_TINTS_MAX];
 } glint_tints;
 
@@ -26,8 +26,8 @@ void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_ge
 /// The target of the rays from points to one light.
 typedef struct glint_tint_light {
     bool directional;
-    double position[3]; ///< directional: the direction
-    double radius; ///< of an area light's samples around `position`
+    double position[3]; ///< position of the light; directional: the direction
+    double radius; ///< radius of an area light's samples around `position`
 } glint_tint_light;
 
 /// Returns the lanes of a group whose rays to a light may hit one of `count` balls listed in `chosen`. point: sixteen

@@ -31,7 +31,7 @@ struct glint_transparent_shadow {
     uint16_t hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS];
     uint16_t holes[GLINT_TILE_GROUPS]; ///< rays that have hit a hole; 0 in frames without holes
-    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< index, in the following arrays, of the ray in each slot
+    uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< index into the following arrays of each slot's ray
     uint32_t group_count;
     // all rays of a call of `follow`, one row of the light after the other
     double target[3][GLINT_TILE_SAMPLES]; ///< the light's position; directional: the direction
@@ -46,7 +46,7 @@ struct glint_transparent_shadow {
         ///< channel
     uint16_t reached[GLINT_TILE_GROUPS];
     uint16_t tinted[GLINT_TILE_GROUPS]; ///< points whose rays to the light are followed
-    float *planes; ///< results of programs; NULL: the plan has no programs for transmission and opacity
+    float *planes; ///< results of the programs of transmission and opacity; NULL: no such program
 };
 
 static void *create(const glint_plan *plan)
@@ -181,8 +181,8 @@ static bool is_black(const glint_plan *plan, uint32_t material)
     return !plan->patterns && !plan->derivatives && m->highlight == GLINT_HIGHLIGHT_NONE && vec_max_abs(m->diffuse) == 0;
 }
 
-/// Returns the lanes whose rays to the light are followed: from points that show light, and that some row does not
-/// reach freely.
+/// Returns the lanes whose rays to the light are followed: from points that reflect light and that are occluded from
+/// some row.
 static bool choose_points(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot, uint32_t count)
 {
     uint16_t lanes[GLINT_TILE_GROUPS] = { 0 };

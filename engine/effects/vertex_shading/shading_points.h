@@ -25,8 +25,8 @@ typedef struct glint_shading_points_cached {
     double *slopes; ///< for each point its light (three numbers) and three slopes for each derivative; NULL: no
         ///< derivatives
     size_t slope_count; ///< derivatives
-    atomic_uchar *state; ///< of each block: a glint_block_state
-    size_t reserved; ///< bytes of the budget
+    atomic_uchar *state; ///< state of each block: a glint_block_state
+    size_t reserved; ///< bytes reserved in the budget
 } glint_shading_points_cached;
 
 /// Prepares for a frame: reuses the cached light if its key is the plan's, otherwise allocates memory.

@@ -14,10 +14,10 @@
 #include <sched.h>
 #include <stdlib.h>
 
-#define PREFETCHED 8 ///< points ahead
+#define PREFETCHED 8 ///< number of points to prefetch ahead
 
 struct glint_vertex {
-    glint_batch batch; ///< of one block
+    glint_batch batch; ///< the points of one block
     _Alignas(64) uint32_t no_owner[GLINT_SHADING_POINT_BLOCK]; ///< GLINT_MISS
     _Alignas(64) double nowhere[GLINT_SHADING_POINT_BLOCK]; ///< 0
     uint16_t wanted[GLINT_TILE_GROUPS];

@@ -6,7 +6,7 @@
 #include "engine/effects/light_groups/plan.h"
 
 #define PI 0x1.921fb54442d18p+1
-#define STRENGTH_MAX 1e150 ///< white in any film; products stay finite below it
+#define STRENGTH_MAX 1e150 ///< larger strengths are white in any film; products below it stay finite
 
 bool glint_light_shows(const glint_light_desc *desc, double shown[3])
 {
