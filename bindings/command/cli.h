@@ -61,37 +61,37 @@ typedef struct cli_options {
     const char *script; ///< NULL: not given
     char **arguments; ///< file names, for a command that takes files; otherwise the script's arguments after `--`
     int argument_count;
-    const char **lights; ///< owned; of relight: NAME=VALUE for each light
+    const char **lights; ///< for relight, owned: NAME=VALUE for each light
     size_t light_count;
-    const char *file; ///< of reproduce
+    const char *file; ///< the file that reproduce compares
     const char *output; ///< the text of -o; NULL: not given
-    const char *label, *title, *colorbar; ///< of sheet; the title also of publish; NULL: not given
-    const char *controls; ///< of publish; NULL: all parameters
-    bool shows_source; ///< of publish
+    const char *label, *title, *colorbar; ///< for sheet; `title` also for publish; NULL: not given
+    const char *controls; ///< parameters that publish shows; NULL: all
+    bool shows_source; ///< publish shows the script's source
     bool is_live; ///< --live
-    const char *live_script; ///< of --live; NULL: the script itself
+    const char *live_script; ///< script of --live; NULL: the script itself
     int64_t columns, difference; ///< of sheet; 0: not given
     double gain, label_size; ///< of sheet; 0: not given
     bool transparent; ///< of sheet
     int64_t frame; ///< of explain
-    double fail, warn; ///< of compare
+    double fail, warn; ///< limits for compare
     cli_sweep *sweeps;
     size_t sweep_count;
     glintL_request request; ///< the run takes it over
     bool quick; ///< of cost
-    bool programs; ///< of explain: lists the instructions of programs
-    double budget_s; ///< of cost; 0: none
-    const char *report, *knobs; ///< of cost; NULL: no report; all knobs
-    char width[16], height[16]; ///< of --size
+    bool programs; ///< explain lists the instructions of programs
+    double budget_s; ///< time budget of cost; 0: none
+    const char *report, *knobs; ///< for cost; NULL: no report, all knobs
+    char width[16], height[16]; ///< the two numbers of --size
     bool finds_exposure; ///< --exposure auto
     bool finds_range; ///< --colormap MAP:auto
     char exposure[16], colormap[64]; ///< texts of the values that these options found
     int64_t start, end, jump; ///< -s -e -j; 0: not given
     bool has_frames;
-    int http_port; ///< of watch; 0: any free port, -1: no page
-    const char *terminal; ///< of watch; NULL: ask the terminal
+    int http_port; ///< port of watch; 0: any free port, -1: no page
+    const char *terminal; ///< graphics protocol for watch; NULL: query the terminal
     double untrusted_s; ///< time limit of an untrusted script; 0: the script is trusted
-    const char *dialect; ///< of the script; NULL: glint's own
+    const char *dialect; ///< dialect of the script; NULL: glint's own
     const char *dialect_text[CLI_DIALECT_OPTIONS]; ///< texts of --gr-order and so on; NULL: not given
 } cli_options;
 
@@ -103,8 +103,9 @@ typedef struct cli_option cli_option;
 struct cli_option {
     const char *name;
     char letter; ///< 0: none
-    /// The placeholder of its value in --help: "LIST"; "show|error|none": one of these; "": the choices of the field of
-    /// scene:render{}; "[PORT]": an optional number, without which `text` is NULL; NULL: the option takes no value.
+    /// The placeholder of the option's value in --help: "LIST"; "show|error|none": one of these words; "": the
+    /// choices of the field of scene:render{}; "[PORT]": an optional number, without which `text` is NULL; NULL: the
+    /// option takes no value.
     const char *value;
     unsigned commands; ///< the commands that accept the option
     /// Reads the option's text, and may change it. Returns false when the text is wrong, and writes the reason to
@@ -123,7 +124,7 @@ extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// Returns the placeholder of the option's value in --help, or its choices; "" when it takes no value.
 void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE]);
-bool cli_option_may_lack(const cli_option *option); ///< its value is optional
+bool cli_option_may_lack(const cli_option *option); ///< returns whether the option's value is optional
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_request *request, const char *name, const char *text);
 
@@ -162,7 +163,7 @@ void cli_free_list(cli_file_list *list);
 /// Reads "name=a:b:n", "name=a:b:*n" or "name=v1,v2". The name stays in `text`. The caller frees the sweep, on failure
 /// too.
 bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SIZE]);
-int64_t cli_sweep_points(const cli_options *options); ///< the product of the counts; 0: no --sweep
+int64_t cli_sweep_points(const cli_options *options); ///< returns the product of the axes' counts; 0: no --sweep
 /// Sets the swept parameters to their values at a point, 1 ..; the first --sweep changes fastest.
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point);
 /// Writes the values of a point, "radius=2 plain=1", cut to fit.
@@ -227,7 +228,7 @@ typedef struct cli_lua_memory { ///< memory of one Lua state
 
 typedef struct cli_script {
     lua_State *state;
-    int64_t frames; ///< of the jobs that the script returned
+    int64_t frames; ///< number of frames of the jobs that the script returned
     bool has_jobs;
     int jobs; ///< reference to the list of jobs, in the mode GLINTL_MODE_WATCH
     cli_lua_memory memory; ///< of an untrusted script

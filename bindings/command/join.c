@@ -10,8 +10,8 @@ typedef struct join {
     cli_file_list list;
     glint_picture **pictures; // owned
     glint_picture_part *parts;
-    glintL_render render; // of the whole frame, from the first part's options
-    char *options; // of the whole frame's file; owned
+    glintL_render render; // render options of the whole frame, from the first part's options
+    char *options; // text of the options in the whole frame's file; owned
     char *message;
 } join;
 

@@ -26,12 +26,12 @@ typedef struct points {
     point open[TOGETHER_MAX];
     int most; // number of slots of `open` in use, at most
     point *at_hand; // the point whose script runs; NULL: none
-    int64_t frames; // of each point; 0: not known yet
-    unsigned char *failed; // owned; by number
+    int64_t frames; // number of frames of each point; 0: not known yet
+    unsigned char *failed; // owned; for each point: its script has failed
     bool has_failed; // any point has failed
     bool together, in_order; // some job's runs advance together; some frames go to a pipe in order
-    int64_t job, frame; // current ones: position in the list, 1 ..
-    glint_plan *plan; // of the current frame
+    int64_t job, frame; // position of the current job and frame in their lists, 1 ..
+    glint_plan *plan; // plan of the current frame
     glintL_order order; // of the current job
     int64_t *list; // owned; numbers of the frames to render, in order
     int64_t count;
@@ -185,7 +185,7 @@ static point *open_point(points *p, int64_t number)
     run->mode = GLINTL_MODE_WATCH;
     bool good = cli_run_script(&which->script, p->options, run);
     run->mode = GLINTL_MODE_RENDER;
-    const bool renders = !which->script.has_jobs && number == 1; // by calls, in the script's order
+    const bool renders = !which->script.has_jobs && number == 1; // the script renders by calls, in its own order
     if (good && (renders || check_jobs(p, which))) {
         p->frames = which->script.frames;
         run->point_first = (number - 1) * p->frames;
@@ -241,9 +241,9 @@ static point *open_first(points *p)
 
 // ---- The order ----
 
-typedef struct job { // of every point's list of jobs
+typedef struct job { // one job in every point's list of jobs
     points *p;
-    int64_t before, frames; // in the list before this job, and in this job
+    int64_t before, frames; // number of frames in the list before this job, and in this job
     bool good; // the run has not failed
 } job;
 
@@ -288,7 +288,7 @@ static int add_sweeps(points *p)
         glintL_order_axis *axis = glintL_order_add(&p->order, p->options->sweeps[i].count);
         axis->may_fail = true;
         snprintf(axis->name, sizeof axis->name, "%s", p->options->sweeps[i].name);
-        axis->middle = 0; // keeps the fewest states open
+        axis->middle = 0; // this middle value keeps the fewest states open
     }
     return own;
 }
@@ -485,7 +485,7 @@ static points *create(cli_options *options, cli_output *output, glintL_run *run,
 static void destroy(points *p)
 {
     take(p, NULL);
-    for (int i = 0; i < TOGETHER_MAX; i++) { // still open after a failure
+    for (int i = 0; i < TOGETHER_MAX; i++) { // points that are still open after a failure
         p->open[i].has_frames = false;
         close_point(p, &p->open[i]);
     }

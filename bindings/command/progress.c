@@ -22,11 +22,11 @@ struct cli_progress {
     pthread_cond_t wake;
     bool stops, is_drawn, color;
     double start_ms;
-    int64_t done, kept, todo; // todo 0: unknown
+    int64_t done, kept, todo; // numbers of frames; todo 0: unknown
     char what[80]; // name of the step of a study, or of a film; "": the bar counts frames
     double done_ms, step_ms, remaining_ms;
     double film_ms; // start time of the film
-    glint_renderer *renderer; // set while it renders, otherwise NULL
+    glint_renderer *renderer; // the renderer while it renders, otherwise NULL
 };
 
 static void format_time(char out[32], double seconds)

@@ -21,9 +21,9 @@ typedef struct reproduction {
     const char *file;
     glint_picture *picture;
     char *params, *options, *pass, *sweep; // split in place: the sets and render texts point into them
-    char folder[256]; // of the new file
+    char folder[256]; // temporary folder of the new file
     char output[300]; // the new file's name pattern
-    char *made[GLINTL_PASSES_MAX + 1]; // by pass, for lights the last one; owned
+    char *made[GLINTL_PASSES_MAX + 1]; // owned names of the new files by pass; for light passes only the last one
     const char *made_path; // the file to compare
     bool lacks_memory; // a name in `made` could not be allocated
     char reason[GLINTL_MESSAGE_SIZE];

@@ -21,7 +21,7 @@
 #define TICK_MS 50.0 // longest time between two checks of the written bytes
 #define SHORTEST_TICK_MS 1.0
 #define FASTEST 8e6 // bytes per millisecond: upper bound of writing, memory to memory, with several threads
-#define GRACE_MS 500 // from the signal that asks the child to end to SIGKILL
+#define GRACE_MS 500 // time from the signal that asks the child to end until SIGKILL
 
 // ---- The folder ----
 
@@ -61,8 +61,8 @@ typedef struct watched {
     double until_ms; // time of SIGTERM, later of SIGKILL
     end_cause ended_by;
     int number; // BY_SIGNAL: the first signal
-    uint64_t most; // limit of all bytes that it writes
-    double tick_ms; // until the next check of the written bytes
+    uint64_t most; // limit of all bytes that the child writes
+    double tick_ms; // time until the next check of the written bytes
 } watched;
 
 // Returns an upper bound for the disk space of the bytes that the child has written: each call to write() may end in a

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define INSTRUCTIONS 1000 // between two checks for an interrupt
+#define INSTRUCTIONS 1000 // instructions between two checks for an interrupt
 
 // ---- Memory ----
 
@@ -20,7 +20,7 @@ static void *allocate(void *context, void *block, size_t old_size, size_t size)
 {
     cli_lua_memory *memory = context;
     if (!block)
-        old_size = 0; // for a new block it is the kind of object
+        old_size = 0; // for a new block Lua passes the kind of object here
     const size_t before = taken(old_size), after = taken(size);
     if (after > before && after - before > memory->most - memory->used)
         return NULL;

@@ -20,11 +20,11 @@
 
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers" // SCMP_A0 and similar macros omit fields
 
-#define MEMORY_LIMIT ((rlim_t)4 << 30) // of the process
+#define MEMORY_LIMIT ((rlim_t)4 << 30) // limit of the address space of the process
 #define ARENAS 4 // malloc reserves 64 MiB of addresses for each
-#define WRITE_LIMIT ((uint64_t)64 << 20) // of one call; the parent sees the bytes only when the call has ended
+#define WRITE_LIMIT ((uint64_t)64 << 20) // bytes of one write call; the parent sees them only when the call has ended
 #define OPEN_FILES_LIMIT 64
-#define CPU_SLACK_S 2 // beyond the parent's time limit, which comes first
+#define CPU_SLACK_S 2 // processor time beyond the parent's time limit, which ends the child first
 
 static bool fail(char *message, const char *name)
 {
@@ -48,7 +48,7 @@ static bool set_limits(double seconds, char *message)
     bool good = set_limit(RLIMIT_CPU, ((rlim_t)seconds + CPU_SLACK_S) * cpus) &&
                 set_limit(RLIMIT_FSIZE, CLI_UNTRUSTED_FILE) && set_limit(RLIMIT_NOFILE, OPEN_FILES_LIMIT) &&
                 set_limit(RLIMIT_CORE, 0);
-#ifndef __SANITIZE_ADDRESS__ // which maps terabytes
+#ifndef __SANITIZE_ADDRESS__ // the address sanitizer maps terabytes
     good = good && set_limit(RLIMIT_AS, MEMORY_LIMIT);
 #endif
 #ifdef M_MMAP_THRESHOLD

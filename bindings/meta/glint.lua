@@ -13,10 +13,10 @@ local glint = {}
 
 -- ---- Values ----
 
---- Three numbers, immutable. To change a vector of an object, assign a whole one (`lamp.position = {0, 20, 0}`), or one
---- component if the object has a place (`lamp.x = 3`).
---- `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b` and `-a` work by component; one side may be a number.
---- An array `{x, y, z}` may replace a vector. `#v` is 3; `==` compares the numbers.
+--- Three numbers, immutable. To change a vector of an object, assign a whole one (`lamp.position = {0, 20, 0}`), or
+--- one component if the object has a position (`lamp.x = 3`). `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`,
+--- `a ^ b` and `-a` work by component; one side may be a number. An array `{x, y, z}` may replace a vector. `#v` is
+--- 3; `==` compares the numbers.
 ---@class glint.vector
 ---@field x number  also v[1]
 ---@field y number  also v[2]
@@ -78,21 +78,21 @@ function vector:reflect(n) end
 local material = {}
 
 ---@class glint.geometry
----@field normal glint.vec3  of the surface, towards the side the eye is on
+---@field normal glint.vec3  surface normal, on the eye's side
 ---@field to_light glint.vec3  from the point to the light
 ---@field to_eye glint.vec3  from the point to the eye
----@field p? glint.vec3  the point, where the material has patterns or a shader; its bump is not seen. Default {0, 0, 0}
+---@field p? glint.vec3  the point, read by patterns and shaders of the material; bumps are ignored. Default {0, 0, 0}
 
 ---@class glint.reflection
----@field diffuse glint.vector  kd (n.l); 0 where n.l <= 0
----@field specular glint.vector  ks S: (r.v)^shininess, or its kin by `model`; 0 where n.l <= 0
+---@field diffuse glint.vector  kd (n.l); 0 if n.l <= 0
+---@field specular glint.vector  ks S, where S is (r.v)^shininess or the term of another `model`; 0 if n.l <= 0
 
 --- The two terms for one light of strength 1, computed by the kernels of a frame. The vectors need not be unit.
 ---@param geometry glint.geometry
 ---@return glint.reflection
 function material:evaluate(geometry) end
 
---- Releases the object now instead of when it is collected. Shapes and scenes that contain it can still use it.
+--- Releases the object now instead of when it is collected. Shapes and scenes that use it keep it.
 function material:close() end
 
 ---@param fields glint.material_fields
@@ -106,9 +106,9 @@ function glint.material(fields) end
 ---@fields point_light
 
 ---@class glint.point_light: glint.point_light_fields
----@field x number  of position
----@field y number  of position
----@field z number  of position
+---@field x number  the x coordinate of position
+---@field y number  the y coordinate of position
+---@field z number  the z coordinate of position
 local point_light = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -135,9 +135,9 @@ function glint.directional_light(fields) end
 ---@fields spot_light
 
 ---@class glint.spot_light: glint.spot_light_fields
----@field x number  of position
----@field y number  of position
----@field z number  of position
+---@field x number  the x coordinate of position
+---@field y number  the y coordinate of position
+---@field z number  the z coordinate of position
 local spot_light = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -153,9 +153,9 @@ function glint.spot_light(fields) end
 ---@fields disk_light
 
 ---@class glint.disk_light: glint.disk_light_fields
----@field x number  of position
----@field y number  of position
----@field z number  of position
+---@field x number  the x coordinate of position
+---@field y number  the y coordinate of position
+---@field z number  the z coordinate of position
 local disk_light = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -182,9 +182,9 @@ function glint.polygon_light(fields) end
 ---@fields sphere_light
 
 ---@class glint.sphere_light: glint.sphere_light_fields
----@field x number  of position
----@field y number  of position
----@field z number  of position
+---@field x number  the x coordinate of position
+---@field y number  the y coordinate of position
+---@field z number  the z coordinate of position
 local sphere_light = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -197,26 +197,26 @@ function glint.sphere_light(fields) end
 -- ---- Camera ----
 
 ---@class glint.camera_fields
----@field eye? glint.vec3  world units; needed where there is no `matrix`
----@field at? glint.vec3  a point to look at; other than `eye`. Give either this or `direction`; the last set counts
+---@field eye? glint.vec3  world units; required without `matrix`
+---@field at? glint.vec3  a point to look at; different from `eye`. Give either `at` or `direction`; the last assignment counts
 ---@field direction? glint.vec3  a direction to look in; not zero. nil while `at` is used
----@field up? glint.vec3  not zero; when parallel to the view, the world axis least aligned is taken. Default {0, 1, 0}
+---@field up? glint.vec3  not zero; if parallel to the view, replaced by the world axis least aligned with the view. Default {0, 1, 0}
 ---@field fov? number  vertical field of view of a perspective camera, degrees, between 0 and 180. Default 40
----@field matrix? number[][]  instead of eye, direction and up: R and t of OpenCV, 3 or 4 rows of four numbers. They take a point of the world to x right, y down, z away from the eye; R is a rotation
----@field fx? number  focal length in pixels, > 0, instead of `fov`; the last set counts. Default 0: by `fov`
----@field fy? number  the same downwards. Default 0: fx
+---@field matrix? number[][]  instead of eye, direction and up: R and t of OpenCV, 3 or 4 rows of four numbers. They map a world point to x right, y down, z away from the eye; R is a rotation
+---@field fx? number  horizontal focal length in pixels, > 0, instead of `fov`; the last assignment counts. Default 0: from `fov`
+---@field fy? number  vertical focal length in pixels. Default 0: fx
 ---@field cx? number  column of the principal point, pixels from the left edge, where the first pixel's centre is at 0.5 (OpenCV's own count has it at 0: add 0.5). Default nil: the middle
----@field cy? number  its row, from the upper edge. Default nil: the middle
----@field w? number  width of the picture that fx, fy, cx and cy are for, pixels; in another size they are scaled. Default 0: every picture
----@field h? number  its height; with `w`
+---@field cy? number  row of the principal point, pixels from the upper edge. Default nil: the middle
+---@field w? number  width of the picture that fx, fy, cx and cy are for, pixels; for other sizes they are scaled. Default 0: never scaled
+---@field h? number  height of that picture; given together with `w`
 ---@field projection? "perspective"|"orthographic"  Default "perspective"
 ---@field height? number  vertical extent of an orthographic camera, world units, > 0. Default 10
----@field pixel_offset? number  where in its pixel a single sample lies, 0 .. 1. Default 0.5, the centre
----@field shutter? number  how long the shutter is open, a share of the time from one frame to the next, 0 .. 1. An animation's frame function is then called for several times around the frame's own, and the picture's light is their mean. Default 0, an instant
----@field shutter_times? integer  how many times those are, 1 .. 1024. Default 8
+---@field pixel_offset? number  position of a single sample within its pixel, 0 .. 1. Default 0.5, the centre
+---@field shutter? number  time that the shutter is open, as a share of the time from one frame to the next, 0 .. 1. An animation's frame function is then called for several times around the frame's own, and the picture's light is their mean. Default 0, an instant
+---@field shutter_times? integer  number of times for `shutter`, 1 .. 1024. Default 8
 ---@field aperture? number  radius of the lens, world units, >= 0. Default 0, a pinhole: everything is sharp
----@field focus? number|glint.vec3  what is sharp: its distance along the view, > 0, or a point in front of the eye. nil: `at`
----@field blades? integer  0: a round lens; 3 .. 64: a regular polygon in its circle, a corner up. Default 0
+---@field focus? number|glint.vec3  the plane in focus: its distance along the view, > 0, or a point on it in front of the eye. nil: `at`
+---@field blades? integer  0: a round lens; 3 .. 64: a regular polygon inscribed in the lens's circle, with a corner at the top. Default 0
 ---@field blade_rotation? number  turns the polygon, counter-clockwise as the eye sees it, degrees. Default 0
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
@@ -242,9 +242,9 @@ function glint.camera(fields) end
 -- ---- Shapes ----
 
 ---@class glint.shape_fields
----@field material? glint.material  Default: a material of its own with default fields; of a part of a combined solid that of the solid
----@field transform? glint.transform  of the shape as described; nil: where it is described
----@field two_sided? boolean  the normal turns to the viewer; false: the back gets ambient light only. Default true
+---@field material? glint.material  Default: a new material with default fields; for a part of a combined solid, the material of the solid
+---@field transform? glint.transform  maps the described shape to its place in the world; nil: no change
+---@field two_sided? boolean  true: the normal is turned to the viewer; false: the back gets only ambient light. Default true
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
 ---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group|glint.union|glint.intersection|glint.difference
@@ -283,12 +283,12 @@ function glint.matrix(numbers) end
 
 ---@class glint.sphere_fields: glint.shape_fields
 ---@field center glint.vec3  world units
----@field radius number  world units, > 0; in a frame 1e-150 and more, of the distance from the eye too
+---@field radius number  world units, > 0; a frame needs a radius >= 1e-150, also relative to the distance from the eye
 
 ---@class glint.sphere: glint.sphere_fields
----@field x number  of center
----@field y number  of center
----@field z number  of center
+---@field x number  the x coordinate of center
+---@field y number  the y coordinate of center
+---@field z number  the z coordinate of center
 local sphere = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -299,7 +299,7 @@ function sphere:close() end
 function glint.sphere(fields) end
 
 ---@class glint.plane_fields: glint.shape_fields
----@field point glint.vec3  any point of it, world units
+---@field point glint.vec3  any point on the plane, world units
 ---@field normal glint.vec3  not zero, need not be unit
 
 ---@class glint.plane: glint.plane_fields
@@ -315,15 +315,15 @@ function glint.plane(fields) end
 --- Many spheres in one shape, copied once from one array.
 ---@class glint.spheres_fields: glint.shape_fields
 ---@field data number[]|string  x, y, z, radius of each sphere: a flat table, or packed numbers in native byte order
----@field format? "f32"|"f64"  of packed data; required there and refused otherwise
----@field materials? glint.material[]  in place of `material`, with `index`
+---@field format? "f32"|"f64"  number format of packed data; required for packed data, otherwise refused
+---@field materials? glint.material[]  instead of `material`, with `index`
 ---@field index? integer[]|string  which of `materials` each sphere has, from 1: a table, or packed u32 numbers
 
 ---@class glint.spheres: glint.shape_fields
----@field count integer  how many spheres; only read
----@field materials glint.material[]  a new list of them; only read
----@field min glint.vector  of the box around them, before its transform, the corner of the smallest coordinates; only read
----@field max glint.vector  that of the largest; only read
+---@field count integer  number of spheres; read-only
+---@field materials glint.material[]  a new list of the materials; read-only
+---@field min glint.vector  the corner of the smallest coordinates of the box around the spheres, before the transform; read-only
+---@field max glint.vector  the corner of the largest coordinates; read-only
 local spheres = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -334,30 +334,30 @@ function spheres:close() end
 function glint.spheres(fields) end
 
 ---@alias glint.shading
----| "faceted"  # lit in each sample, with the normal of its face
----| "phong"  # lit in each sample, with a normal between those of the vertices, in the mesh's own space (without `normals`, the mean of the faces around); shadows are the faces' own
----| "flat"  # lit once a face, at its centroid
----| "gouraud"  # lit once a vertex, with its normal; between them by barycentric coordinates
+---| "faceted"  # shaded per sample, with the normal of the face
+---| "phong"  # shaded per sample, with a normal interpolated from the vertices, in the mesh's own space (without `normals`, a vertex has the mean normal of the faces around it); shadows are computed with the flat faces
+---| "flat"  # shaded once per face, at its centroid
+---| "gouraud"  # shaded once per vertex, with its normal; interpolated by barycentric coordinates
 
 --- Polygons that share vertices, from tables or from a file, .obj, .stl or .ply; copied once. Give `file`, or
 --- `vertices` and `faces`. Concave faces are triangulated; faces that cross themselves are refused.
 ---@class glint.mesh_fields: glint.shape_fields
----@field file? string  a mesh, relative to the working directory: .stl; .ply (without `material` also its colours, a material each); else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
----@field vertices? glint.vec3[]|number[]|string  places: a list of {x, y, z}, a flat table or packed numbers
----@field faces? integer[][]|integer[]|string  numbers of vertices, from 1: a list for each face, any number of corners, seen from the front counter-clockwise; or a flat table or packed u32 numbers of triangles
----@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit
----@field uv? number[][]|number[]|string  u, v for s.uv and textures, one pair a vertex, or one a corner in the order of the faces; a file has them as `vt`
----@field format? "f32"|"f64"  of packed vertices, normals and uv; required there and refused otherwise
----@field materials? glint.material[]  in place of `material`, with `index`
+---@field file? string  a mesh, relative to the working directory: .stl; .ply (without `material` also its colours, with one material for each colour); else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
+---@field vertices? glint.vec3[]|number[]|string  positions: a list of {x, y, z}, a flat table or packed numbers
+---@field faces? integer[][]|integer[]|string  indices of vertices, from 1: a list for each face, with any number of corners, counter-clockwise seen from the front; or a flat table or packed u32 numbers of triangles
+---@field normals? glint.vec3[]|number[]|string  one per vertex, or one per corner in the order of the faces; not zero, need not be unit
+---@field uv? number[][]|number[]|string  u, v for s.uv and textures, one pair per vertex, or one per corner in the order of the faces; a file stores them as `vt`
+---@field format? "f32"|"f64"  number format of packed vertices, normals and uv; required for packed data, otherwise refused
+---@field materials? glint.material[]  instead of `material`, with `index`
 ---@field index? integer[]|string  which of `materials` each face has, from 1: a table, or packed u32 numbers
 ---@field shading? glint.shading  Default "phong" with normals, else "faceted"
 
 ---@class glint.mesh: glint.shape_fields
 ---@field shading glint.shading
----@field count integer  how many triangles; only read
----@field materials glint.material[]  all of them, of a file those that faces have; only read, their own fields can be set
----@field min glint.vector  of the box around its vertices, before its transform, the corner of the smallest coordinates; only read
----@field max glint.vector  that of the largest; only read
+---@field count integer  number of triangles; read-only
+---@field materials glint.material[]  all materials; for a mesh from a file, the materials that its faces use. The list is read-only, but the fields of its materials can be set
+---@field min glint.vector  the corner of the smallest coordinates of the box around the vertices, before the transform; read-only
+---@field max glint.vector  the corner of the largest coordinates; read-only
 local mesh = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -370,7 +370,7 @@ function glint.mesh(fields) end
 ---@class glint.sphere_mesh_fields: glint.shape_fields
 ---@field center glint.vec3  world units
 ---@field radius number  world units, > 0; the vertices are on the sphere
----@field segments integer  around the equator, 3 to 16384; half as many from pole to pole
+---@field segments integer  number of segments around the equator, 3 to 16384; from pole to pole there are half as many
 ---@field shading? glint.shading  Default "phong", with the sphere's own normals at the vertices
 
 --- A mesh that approximates a sphere, to compare with the exact one.
@@ -380,7 +380,7 @@ function glint.sphere_mesh(fields) end
 
 ---@class glint.box_fields: glint.shape_fields
 ---@field min glint.vec3  the corner of the smallest coordinates
----@field max glint.vec3  that of the largest: above those of `min`, each
+---@field max glint.vec3  the corner of the largest coordinates, each greater than in `min`
 
 ---@class glint.box: glint.box_fields
 local box = {}
@@ -398,9 +398,9 @@ function glint.box(fields) end
 ---@field radius number  world units, > 0
 
 ---@class glint.disk: glint.disk_fields
----@field x number  of center
----@field y number  of center
----@field z number  of center
+---@field x number  the x coordinate of center
+---@field y number  the y coordinate of center
+---@field z number  the z coordinate of center
 local disk = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -412,9 +412,9 @@ function glint.disk(fields) end
 
 ---@class glint.cylinder_fields: glint.shape_fields
 ---@field base glint.vec3  the middle of one end
----@field top glint.vec3  the middle of the other; not the same place
+---@field top glint.vec3  the middle of the other end; different from `base`
 ---@field radius number  world units, > 0
----@field capped? boolean  closed at both ends; false: its side alone, seen from within too. Default true
+---@field capped? boolean  closed at both ends; false: only the side surface, which is also visible from inside. Default true
 
 ---@class glint.cylinder: glint.cylinder_fields
 local cylinder = {}
@@ -428,9 +428,9 @@ function glint.cylinder(fields) end
 
 ---@class glint.cone_fields: glint.shape_fields
 ---@field base glint.vec3  the middle of the base
----@field top glint.vec3  the apex; not the same place
----@field radius number  of the base, world units, > 0
----@field capped? boolean  closed at its base; false: its side alone, seen from within too. Default true
+---@field top glint.vec3  the apex; different from `base`
+---@field radius number  radius of the base, world units, > 0
+---@field capped? boolean  closed at its base; false: only the side surface, which is also visible from inside. Default true
 
 ---@class glint.cone: glint.cone_fields
 local cone = {}
@@ -444,14 +444,14 @@ function glint.cone(fields) end
 
 ---@class glint.torus_fields: glint.shape_fields
 ---@field center glint.vec3
----@field axis? glint.vec3  that it turns around, not zero. Default { 0, 1, 0 }
+---@field axis? glint.vec3  the axis of rotation, not zero. Default { 0, 1, 0 }
 ---@field major number  radius of the circle in the middle of its tube, world units, > 0
----@field minor number  radius of the tube, > 0 and below major: the tube does not meet itself
+---@field minor number  radius of the tube, > 0 and less than major, so that the tube does not intersect itself
 
 ---@class glint.torus: glint.torus_fields
----@field x number  of center
----@field y number  of center
----@field z number  of center
+---@field x number  the x coordinate of center
+---@field y number  the y coordinate of center
+---@field z number  the z coordinate of center
 local torus = {}
 
 --- Releases the object now instead of when it is collected. A scene that contains it can still use it.
@@ -462,16 +462,16 @@ function torus:close() end
 function glint.torus(fields) end
 
 ---@class glint.group_fields
----@field transform? glint.transform  of all that is in it; nil: none
+---@field transform? glint.transform  applied to everything in the group; nil: none
 ---@field name? string  at most 63 bytes. Default ""
----@field [integer] glint.shape  what is in it
+---@field [integer] glint.shape  the shapes and groups in the group
 
---- Shapes under one transform. A shape or group may be in several groups and scenes. It appears in each, and changes to
---- it apply everywhere. Groups nest at most 64 deep, and a group cannot contain itself.
+--- Shapes under one transform. A shape or group may be in several groups and scenes. It appears in each, and changes
+--- to it apply everywhere. Groups nest at most 64 deep. A group cannot contain itself.
 ---@class glint.group
 ---@field transform glint.transform
 ---@field name string  at most 63 bytes
----@field count integer  how many shapes and groups are in it; only read
+---@field count integer  number of shapes and groups in the group; read-only
 local group = {}
 
 --- Adds a shape or group and returns it.
@@ -497,7 +497,7 @@ function glint.group(fields) end
 --- solid, with its own material or, without one, the solid's. That defaults to the first material among the parts; its
 --- `ior` and `absorption` apply inside. The solid is one object. `two_sided` of parts has no effect.
 ---@class glint.union: glint.combined_fields
----@field count integer  how many parts it was given; only read
+---@field count integer  number of the given parts; read-only
 local union = {}
 
 --- Adds a part and returns it.
@@ -518,7 +518,7 @@ function glint.union(fields) end
 --- Everything inside all parts.
 --- See glint.union for parts, their materials and the inside.
 ---@class glint.intersection: glint.combined_fields
----@field count integer  how many parts it was given; only read
+---@field count integer  number of the given parts; read-only
 local intersection = {}
 
 --- Adds a part and returns it.
@@ -536,10 +536,10 @@ function intersection:close() end
 ---@return glint.intersection
 function glint.intersection(fields) end
 
---- Everything inside the first part and outside the others. If one of them ends at a face of the first, it is open.
---- See glint.union for parts, their materials and the inside.
+--- Everything inside the first part and outside the others. If another part ends exactly at a face of the first part,
+--- the solid is open at that face. See glint.union for parts, their materials and the inside.
 ---@class glint.difference: glint.combined_fields
----@field count integer  how many parts it was given; only read
+---@field count integer  number of the given parts; read-only
 local difference = {}
 
 --- Adds a part and returns it.
@@ -562,18 +562,18 @@ function glint.difference(fields) end
 --- Drawn over a finished picture: only in .png files of beauty, not in other passes and not in .pfm, .npy and .exr.
 --- Lengths in points are dpi / 72 pixels if `dpi` is set, otherwise pixels.
 ---@class glint.overlay_fields
----@field at? "top left"|"top"|"top right"|"left"|"center"|"right"|"bottom left"|"bottom"|"bottom right"|number[]  where it is, or {x, y} in shares of the room it leaves within the margin. Default of a label "top left", a colour bar "right", axes "bottom left"
----@field position? number[]  {x, y} of its upper left corner in pixels from that of the picture, in place of `at`
----@field size? number  of its letters, points, 1 .. 10000. Default nil: a 36th of the picture's height, 10 pixels at least
----@field margin? number  to the picture's border, points. Default nil: half of `size`
----@field color? glint.color  of letters and lines; not toned. Default 1
----@field background? glint.color  of a rectangle behind it. Default nil: none
+---@field at? "top left"|"top"|"top right"|"left"|"center"|"right"|"bottom left"|"bottom"|"bottom right"|number[]  position in the picture, or {x, y} as shares of the free space within the margin. Default for a label "top left", a colour bar "right", axes "bottom left"
+---@field position? number[]  {x, y} of its upper left corner, in pixels from the upper left corner of the picture; instead of `at`
+---@field size? number  size of its letters, points, 1 .. 10000. Default nil: 1/36 of the picture's height, at least 10 pixels
+---@field margin? number  distance from the picture's border, points. Default nil: half of `size`
+---@field color? glint.color  colour of letters and lines, without the tone curve. Default 1
+---@field background? glint.color  colour of a rectangle behind the overlay. Default nil: none
 ---@field opacity? number  of the background, 0 .. 1. Default 1
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.label_fields: glint.overlay_fields
 ---@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing
----@field at_point? glint.vec3  a point in the world that it stands next to, in place of `at`; `margin` is its distance from there. Default nil
+---@field at_point? glint.vec3  a point in the world next to which the label is drawn, instead of `at`; `margin` is the distance from the point. Default nil
 
 --- A text over the picture. A label set in frame(t) changes the picture's key, but nothing is rendered again for it.
 ---@class glint.label: glint.label_fields
@@ -587,14 +587,14 @@ function label:close() end
 function glint.label(fields) end
 
 ---@class glint.colorbar_fields: glint.overlay_fields
----@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]|fun(share: number): glint.color  as of glint.colormap; a function is called when the bar is made, and reads as the list of its colours
----@field low number  what its first colour stands for
----@field high number  and its last; not the same
----@field title? string  above it; as the text of a label. Default ""
----@field ticks? number[]  1 .. 16 numbers written beside it, from low to high. Default nil: round ones, as many as there is room for
----@field scale? "linear"|"log"  as of glint.colormap. Default "linear"
+---@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]|fun(share: number): glint.color  as in glint.colormap; a function is called when the bar is made, and the field then reads as a list of colours
+---@field low number  the value of the first colour
+---@field high number  the value of the last colour; different from low
+---@field title? string  text above the bar, as in a label. Default ""
+---@field ticks? number[]  1 .. 16 numbers written next to the bar, from low to high. Default nil: as many round numbers as fit
+---@field scale? "linear"|"log"  as in glint.colormap. Default "linear"
 ---@field orientation? "vertical"|"horizontal"  Default "vertical", low at the bottom
----@field length? number  of the bar, points. Default nil: 10 times `size`
+---@field length? number  length of the bar, points. Default nil: 10 times `size`
 
 ---@class glint.colorbar: glint.colorbar_fields
 local colorbar = {}
@@ -608,12 +608,12 @@ function glint.colorbar(fields) end
 
 ---@class glint.axes_fields: glint.overlay_fields
 ---@field labels? string[]  names of x, y and z, at most 15 bytes each. Default {"x", "y", "z"}
----@field length? number  of an axis that lies in the picture, points. Default nil: 2.5 times `size`
----@field box? glint.vec3[]|table  {lowest corner, highest corner} in the world, a box { low, size, xy, xz, yz } or a cell { origin, a, b, c }: axes with numbers along edges of it, in place of `at`, `position`, `margin`, `length` and `background`. Default nil
----@field values? glint.vec3[]  what the numbers are at those two corners. Default nil: places in the world, of a tilted cell lengths along its sides
+---@field length? number  length of an axis parallel to the picture plane, points. Default nil: 2.5 times `size`
+---@field box? glint.vec3[]|table  {lowest corner, highest corner} in the world, a box { low, size, xy, xz, yz } or a cell { origin, a, b, c }: the axes are then drawn with numbers along edges of the box; replaces `at`, `position`, `margin`, `length` and `background`. Default nil
+---@field values? glint.vec3[]  the numbers at those two corners. Default nil: world coordinates; for a tilted cell, lengths along its sides
 
---- The directions x (red), y (green) and z (blue) in the camera's view. With a `box`, three edges on its visible
---- outline, with marks, round numbers and names; a direction along the view has none.
+--- The directions x (red), y (green) and z (blue) in the camera's view. With a `box`: three edges of its visible
+--- outline, with ticks, round numbers and names; none for a direction along the view.
 ---@class glint.axes: glint.axes_fields
 local axes = {}
 
@@ -626,24 +626,24 @@ function glint.axes(fields) end
 
 ---@class glint.curve_fields
 ---@field label? string  as the text of a label; "" shows nothing. Default ""
----@field width? number  of the line, points. Default nil: an eighth of `size`
+---@field width? number  width of the line, points. Default nil: an eighth of `size`
 ---@field hidden? "drawn"|"dashed"|"none"  how the part behind surfaces is drawn. Default "drawn"
 ---@field size? number  of the letters, points, 1 .. 10000. Default nil: a 36th of the picture's height, 10 pixels at least
----@field margin? number  from the line to the label, points. Default nil: half of `size`
----@field color? glint.color  of the line and the letters; not toned. Default 1
----@field background? glint.color  of a rectangle behind the label. Default nil: none
+---@field margin? number  distance from the line to the label, points. Default nil: half of `size`
+---@field color? glint.color  colour of the line and the letters, without the tone curve. Default 1
+---@field background? glint.color  colour of a rectangle behind the label. Default nil: none
 ---@field opacity? number  of the background, 0 .. 1. Default 1
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.line_fields: glint.curve_fields
----@field from glint.vec3  where it begins in the world
----@field to glint.vec3  where it ends
+---@field from glint.vec3  start point in the world
+---@field to glint.vec3  end point in the world
 
 --- An arrow between two points of the world, drawn over the picture, with its label beyond its tip.
 ---@class glint.arrow: glint.line_fields
 local arrow = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function arrow:close() end
 
 ---@param fields glint.line_fields
@@ -654,7 +654,7 @@ function glint.arrow(fields) end
 ---@class glint.line: glint.line_fields
 local line = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function line:close() end
 
 ---@param fields glint.line_fields
@@ -663,15 +663,15 @@ function glint.line(fields) end
 
 ---@class glint.arc_fields: glint.curve_fields
 ---@field at glint.vec3  the corner of the angle in the world
----@field from glint.vec3  a direction from there
----@field to glint.vec3  another one
+---@field from glint.vec3  the first direction from `at`
+---@field to glint.vec3  the second direction from `at`
 ---@field radius? number  world units. Default nil: a twelfth of the picture's height
 
 --- The angle between two directions at a point, drawn over the picture as part of a circle.
 ---@class glint.arc: glint.arc_fields
 local arc = {}
 
---- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
 function arc:close() end
 
 ---@param fields glint.arc_fields
@@ -682,16 +682,16 @@ function glint.arc(fields) end
 
 -- ---- Scene ----
 
---- The fields of one read from a scene are read-only: assign a whole table.
+--- If read from a scene, its fields are read-only: assign a whole table.
 ---@class glint.indirect
----@field samples? integer  ways of light followed from each point seen, 1 .. 65536. Default 16
----@field bounces? integer  matt surfaces on a way that light is followed beyond, 0 .. 2^31; then `ambient` stands for the rest. Default 2
+---@field samples? integer  light paths traced from each visible point, 1 .. 65536. Default 16
+---@field bounces? integer  maximum number of matt surfaces at which a path continues, 0 .. 2^31; `ambient` approximates the rest. Default 2
 
 --- Ambient light times the unoccluded share of the sky, weighted by the cosine. If read from a scene, or made by
 --- glint.ambient_occlusion, its fields are read-only: assign a whole table.
 ---@class glint.ambient_occlusion
----@field samples? integer  rays from each point seen, 1 .. 65536. Default 16
----@field distance? number  world units, > 0: surfaces farther away close nothing. Default math.huge
+---@field samples? integer  rays from each visible point, 1 .. 65536. Default 16
+---@field distance? number  world units, > 0: surfaces farther away do not occlude. Default math.huge
 
 --- Makes the scene's field of this name as a value, which a scene also accepts among its objects.
 ---@param fields glint.ambient_occlusion
@@ -702,7 +702,7 @@ function glint.ambient_occlusion(fields) end
 ---@fields scene
 
 ---@class glint.scene_table: glint.scene_fields
----@field [integer] glint.shape|glint.light|glint.overlay|glint.ambient_occlusion  the objects, numbered in this order, without holes
+---@field [integer] glint.shape|glint.light|glint.overlay|glint.ambient_occlusion  the objects, numbered in this order, without gaps
 
 ---@class glint.scene: glint.scene_fields
 local scene = {}
@@ -722,7 +722,7 @@ function scene:remove(object) end
 ---@field point glint.vector  world units
 ---@field normal glint.vector  unit, geometric, outward (a plane's own)
 ---@field object glint.shape
----@field element? integer  which of a glint.spheres, or which triangle of a mesh, from 1; nil for other shapes
+---@field element? integer  index of the sphere in a glint.spheres or of the triangle in a mesh, from 1; nil for other shapes
 
 --- Returns the nearest hit of one ray, computed in double precision by the kernels of a frame.
 ---@param origin glint.vec3  world units
@@ -760,62 +760,62 @@ function glint.scene(fields) end
 ---| "mirror"
 ---| "transmission"
 ---| "depth"  # distance from the eye, one number; inf where nothing is hit
----| "normal"  # shading normal turned to the eye; 0 where nothing is hit
+---| "normal"  # shading normal, on the viewer's side; 0 where nothing is hit
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
----| "alpha"  # the share of the samples that hit something, less what glass and translucent surfaces let through to the background; one number, 0 .. 1
+---| "alpha"  # the share of the samples that hit something, minus the share of the background that is visible through glass and translucent surfaces; one number, 0 .. 1
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
----| "albedo"  # diffuse reflectance, as patterns give it; 0 where nothing is hit
+---| "albedo"  # diffuse reflectance, including patterns; 0 where nothing is hit
 ---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers. "light:NAME": the light of the lamps
 --- of that group or name; "light:ambient": the light that no lamp sends; "light:*": all of these
----| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, at the pixel's centre
+---| "outline"  # 1 on outlines and edges of objects, else 0; one number, at the pixel's centre
 
 --- Options of a frame and its file. The command line takes precedence.
 ---@class glint.render
 ---@field width? integer  pixels, 1 .. 65535. Default 1280
 ---@field height? integer  pixels, 1 .. 65535. Default 720
----@field samples? integer  a pixel, 1 .. 65536. Default 1
----@field adaptive? number  0 .. 3: all samples only where neighbours differ by more, red, green and blue together, in shares of the code for white, or show an edge; elsewhere one. Default 0: off
----@field seed? integer  0 .. 2^53: another seed, another sample pattern as good. Default 0
----@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 where mirror + transmission is above 1. Default 5
----@field precision? "double"|"float"  what decides hits and shadows. Default "double"
----@field visibility? "auto"|"cast"|"scan"  how it is found what the eye sees: by a ray through each sample, or by projecting triangles; the same pictures. Default "auto"
----@field bits? 8|16  a channel of a .png. Default 8
----@field transfer? "srgb"|"linear"|"none"  how light becomes codes; "none": linear, but not marked so: viewers take the codes for sRGB. Default "srgb"
+---@field samples? integer  samples per pixel, 1 .. 65536. Default 1
+---@field adaptive? number  0 .. 3: takes all samples only for pixels at an edge, or whose pixel values differ by more from a neighbour's: the sum of the differences in red, green and blue, with white at 1. Other pixels get one sample. Default 0: off
+---@field seed? integer  0 .. 2^53: selects one of many equally good sample patterns. Default 0
+---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 if mirror + transmission of a material exceeds 1. Default 5
+---@field precision? "double"|"float"  the number format in which hits and shadows are decided. Default "double"
+---@field visibility? "auto"|"cast"|"scan"  how visible surfaces are found: by casting a ray through each sample, or by projecting triangles. The pictures are identical. Default "auto"
+---@field bits? 8|16  bits per channel of a .png. Default 8
+---@field transfer? "srgb"|"linear"|"none"  how light is converted to pixel values; "none": linear, but not marked as linear, so that viewers treat the values as sRGB. Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
----@field tone? "clamp"|"reinhard"|"filmic"  what becomes of bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
----@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the curve. Default 0
----@field alpha? boolean  transparent background, behind glass and translucent surfaces too: a .png is RGBA, and passes hold light times coverage. Default false
----@field outline? "none"|"black"|"white"  lines drawn into the .png where the pass "outline" is 1. Default "none"
----@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
----@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of the .png of depth and d:NAME. "viridis:1:9" has 1 and 9 at its ends, evenly between. Default "none": grey, and the picture's own range
----@field dpi? number  pixels an inch where a .png is printed, 0 .. 1e6. Default 0: not said
+---@field tone? "clamp"|"reinhard"|"filmic"  tone curve for bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
+---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the tone curve. Default 0
+---@field alpha? boolean  transparent background, also behind glass and translucent surfaces: a .png is RGBA, and passes store light times coverage. Default false
+---@field outline? "none"|"black"|"white"  colour of lines drawn into the .png where the pass "outline" is 1. Default "none"
+---@field encode? "fast"|"small"  compression of a .png; the pixels are identical. Default "fast"
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of the .png of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
+---@field dpi? number  pixels per inch for printing a .png, 0 .. 1e6. Default 0: not stored
 ---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
----@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth"; "all": every one but d:NAME. Default none
----@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": only this part of the frame, in pixels from the top left, with the same bits as in the whole frame. Default: all
+---@field passes? glint.pass[]|string  passes written in addition to the beauty: a list, or "ambient,depth"; "all": every pass except d:NAME. Default none
+---@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": renders only this part of the frame, in pixels from the top left, bit-identical to the same part of the whole frame. Default: all
 
 ---@class glint.save_options
----@field bits? 8|16  a channel of a .png. Default 8
+---@field bits? 8|16  bits per channel of a .png. Default 8
 ---@field transfer? "srgb"|"linear"|"none"  Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
 ---@field exposure? number  stops, -32 .. 32. Default 0
 ---@field encode? "fast"|"small"  Default "fast"
----@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of depth and d:NAME. "viridis:1:9" has 1 and 9 at its ends, evenly between. Default "none": grey, and the picture's own range
----@field dpi? number  pixels an inch of a .png, 0 .. 1e6. Default 0: not said
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
+---@field dpi? number  pixels per inch of a .png, 0 .. 1e6. Default 0: not stored
 ---@field pass? glint.pass  Default "beauty"
 
 ---@class glint.image
----@field width integer  pixels; only read
----@field height integer  pixels; only read
----@field passes glint.pass[]  those that can be read; only read
----@field exposure number  stops, of its codes, as the script or --exposure says; only read
+---@field width integer  pixels; read-only
+---@field height integer  pixels; read-only
+---@field passes glint.pass[]  the passes that can be read; read-only
+---@field exposure number  exposure of the pixel values in stops, from the script or --exposure; read-only
 local image = {}
 
 --- Returns one pixel, linear. (0, 0) is the top left.
 ---@param x integer  0 .. width - 1
 ---@param y integer  0 .. height - 1
 ---@param pass? glint.pass  Default "beauty"
----@return number r  the only one of "depth", "object_id", "alpha" and "outline"
+---@return number r  red; the only result for "depth", "object_id", "alpha" and "outline"
 ---@return number g
 ---@return number b
 function image:pixel(x, y, pass) end
@@ -877,9 +877,9 @@ function glint.value(x) end
 ---@class glint.animation_fields: glint.render
 ---@field scene glint.scene
 ---@field frames? integer  >= 1, numbered from 1. Default 1
----@field fps? number  frames a second, > 0. Default 24
----@field cyclic? boolean  t = (n-1)/frames, the last frame leads to the first; else (n-1)/(frames-1). Default false
----@field frame? fun(t: number, n: integer)  sets the scene to frame n; may depend on t and n only. Without it all frames show the scene as it is
+---@field fps? number  frames per second, > 0. Default 24
+---@field cyclic? boolean  true: t = (n-1)/frames, so that the last frame leads to the first; false: t = (n-1)/(frames-1). Default false
+---@field frame? fun(t: number, n: integer)  sets the scene to frame n; must depend only on t and n. Without this function all frames show the scene unchanged
 
 ---@class glint.animation: glint.animation_fields
 local animation = {}
@@ -895,21 +895,21 @@ function glint.animation(fields) end
 --- A contact sheet of a sweep's frames, drawn when all of them are finished: rows of labelled pictures with the names
 --- of the axes, as a picture, or as a page with a slider for each axis.
 ---@class glint.sheet
----@field label? boolean|string|fun(values: table<string, any>, n: integer): string  under each picture: true, every axis and its value; false, nothing; "n = {shininess}", with {file} and {frame} too; or what the function makes of the values by name. Default true
----@field columns? integer  pictures in a row of a .png, 1 .. 65535. Default: the values of the first axis
----@field difference? integer  a frame of the sweep, from 1: a second row shows how far each picture is from it. Default none
----@field gain? number  what differences are multiplied by, 0.001 .. 1e6; with `difference`. Default 8
----@field title? string  above the sheet. Default none
----@field size? number  of its text, points, 1 .. 10000. Default: 13 pixels, and 26 of pictures of 900 across and more
----@field dpi? number  pixels an inch, of the .png; a point is dpi / 72 pixels, or 1. Default: that of its pictures
----@field transparent? boolean  no paper: what is neither picture nor text shows through. Default false
----@field colorbar? glint.colorbar  of all pictures, of a .png: at their right, or below them where it is horizontal; with the sheet's text and ink. Default none
----@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png, with the number of the first frame when that is not 1
+---@field label? boolean|string|fun(values: table<string, any>, n: integer): string  text under each picture: true: every axis and its value; false: nothing; a template such as "n = {shininess}", which may also contain {file} and {frame}; or a function that returns the text. Default true
+---@field columns? integer  pictures per row of a .png, 1 .. 65535. Default: the number of values on the first axis
+---@field difference? integer  number of a frame of the sweep, from 1: a second row shows the difference of each picture from this frame. Default none
+---@field gain? number  factor of the differences, 0.001 .. 1e6; with `difference`. Default 8
+---@field title? string  text above the sheet. Default none
+---@field size? number  size of the sheet's text, points, 1 .. 10000. Default: 13 pixels, or 26 for pictures at least 900 pixels wide
+---@field dpi? number  pixels per inch of the .png; a point is dpi / 72 pixels, or 1 pixel without dpi. Default: the dpi of the pictures
+---@field transparent? boolean  the background of the sheet is transparent. Default false
+---@field colorbar? glint.colorbar  a colour bar for all pictures of a .png: to their right or, if horizontal, below them; in the sheet's text size and colour. Default none
+---@field output? string  file name, .png or .html. Default: sheet.png or NAME_sheet.png next to the frames, with the number of the first frame unless that is 1
 
 ---@class glint.sweep_fields: glint.render
 ---@field scene glint.scene
----@field over table[]  the axes, each {object, "field", {values}}; every combination is a frame, the first axis across
----@field size? integer[]  {width, height} in place of those two
+---@field over table[]  the axes, each {object, "field", {values}}; every combination is a frame; the first axis goes across
+---@field size? integer[]  {width, height}, instead of the two fields
 ---@field sheet? glint.sheet  a contact sheet of the frames
 
 ---@class glint.sweep: glint.sweep_fields
@@ -984,19 +984,19 @@ function triple:unpack() end
 
 --- The inputs of a function at a point.
 ---@class glint.surroundings
----@field p glint.triple  the point in its shape's own space, before the shape's transform and those of its groups. On planes with an axis as normal and on faces of boxes that component is the face's own number exactly
+---@field p glint.triple  the point in its shape's own space, before the shape's transform and those of its groups. On faces of boxes and on planes with an axis as normal, the component along the normal is exactly the coordinate of the face
 ---@field world glint.triple  the point in world space
 ---@field n glint.triple  the geometric normal, unit, on the viewer's side
 ---@field v glint.triple  towards the eye, unit
----@field uv glint.triple  coordinates on the surface, u and v: world units along a plane, 0 .. 1 around and along spheres, cylinders and cones, around a torus and around its tube, on its face of a box, `vt` of a mesh
+---@field uv glint.triple  coordinates on the surface, u and v: world units along a plane, 0 .. 1 around and along spheres, cylinders and cones, around a torus and around its tube, across each face of a box, `vt` of a mesh
 ---@field footprint number  width of the pixel at the point, world units; 0 where it is not known
----@field uv_footprint number  the same in units of u and v
----@field l glint.triple  of shaders: towards the light, unit; n.l > 0
----@field light glint.triple  of shaders: colour x intensity x attenuation of the light; shadows are the engine's
----@field distance number  of shaders: to the light, world units
----@field kd glint.triple  of shaders: the material's diffuse
----@field ks glint.triple  of shaders: the material's specular
----@field shininess number  of shaders: the material's
+---@field uv_footprint number  width of the pixel in units of u and v
+---@field l glint.triple  in shaders: direction to the light, unit; n.l > 0
+---@field light glint.triple  in shaders: colour x intensity x attenuation of the light; the engine handles shadows
+---@field distance number  in shaders: distance to the light, world units
+---@field kd glint.triple  in shaders: the material's diffuse
+---@field ks glint.triple  in shaders: the material's specular
+---@field shininess number  in shaders: the material's shininess
 
 --- A colour or a number at each point. The material fields diffuse, ambient, specular, mirror, transmission, shininess,
 --- roughness, bump and opacity accept patterns, and a scene's background. `#pattern` is its program's length,
@@ -1014,7 +1014,7 @@ function pattern:evaluate(at) end
 function glint.pattern(f) end
 
 --- The light that a point reflects from one lamp: the diffuse part and, optionally, the specular part. It is a
---- material's `model`, and is called where n.l > 0. Ambient light stays the engine's.
+--- material's `model`, and is called where n.l > 0. The engine adds ambient light.
 ---@class glint.shader
 local shader = {}
 
@@ -1029,9 +1029,9 @@ function glint.shader(f) end
 
 ---@class glint.texture_fields
 ---@field file string  a PNG file, 8 or 16 bits
----@field wrap? "repeat"|"clamp"|"around"  beyond 0 .. 1: repeat it, continue its border, or repeat it horizontally and continue its border vertically. Default "repeat"
----@field filter? "bilinear"|"nearest"  between four texels, of a picture made smaller as the footprint calls for; or the texel itself. Default "bilinear"
----@field transfer? "srgb"|"linear"  how its codes are meant. Default "srgb", but for a picture that says that it is linear
+---@field wrap? "repeat"|"clamp"|"around"  beyond 0 .. 1: repeats the picture, extends its border, or repeats it horizontally and extends its border vertically. Default "repeat"
+---@field filter? "bilinear"|"nearest"  interpolates four texels, of a copy of the picture reduced to fit the footprint; or takes the nearest texel. Default "bilinear"
+---@field transfer? "srgb"|"linear"  how the file's values are read. Default "srgb", except for a file that is marked as linear
 
 --- A picture. Inside a pattern call it: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) returns red, green and
 --- blue as a vector, and alpha as its field `a`. (0, 0) is the lower left corner, (1, 1) the upper right one. Without a
@@ -1057,10 +1057,10 @@ function glint.texture(fields) end
 --- bits. A map of your own is a list of evenly spaced colours, or a function from 0 .. 1 to a colour; it has
 --- 256 steps.
 ---@param map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|glint.color[]|fun(share: number): glint.color
----@param low? number  what the first colour stands for. Default 0
----@param high? number  what the last one stands for, another number than low. Default 1
----@param scale? "linear"|"log"  "log": equal factors have equal steps of colour; low and high are above 0. Default "linear"
----@param missing? glint.color  of a missing value, NaN. Default "#808080"
+---@param low? number  the value of the first colour. Default 0
+---@param high? number  the value of the last colour, different from low. Default 1
+---@param scale? "linear"|"log"  "log": equal ratios are equal steps of colour; low and high must be above 0. Default "linear"
+---@param missing? glint.color  colour of a missing value, NaN. Default "#808080"
 ---@return fun(x: number): glint.vector
 function glint.colormap(map, low, high, scale, missing) end
 
@@ -1306,9 +1306,9 @@ function glint.pow(a, b) end
 function glint.ease(t, kind) end
 
 ---@class glint.keys
----@field [integer] {[1]: number, [2]: number|glint.vector|number[]}  time and value, times rising; at least two
----@field ease (glint.easing|"spline")?  of the way from each key to the next; spline: through the keys without a halt (Catmull-Rom)
----@field cyclic boolean?  after the last key the first comes again
+---@field [integer] {[1]: number, [2]: number|glint.vector|number[]}  time and value, in ascending order of time; at least two keys
+---@field ease (glint.easing|"spline")?  how the value moves from each key to the next; spline: smoothly through the keys (Catmull-Rom)
+---@field cyclic boolean?  the keys repeat after the last one
 
 --- Returns a function of time through keys. It returns a number, a vector for values of three numbers, otherwise a
 --- list. Before the first key it returns the first value, after the last key the last value.
@@ -1399,8 +1399,8 @@ function glint.log(x) end
 
 --- A finished picture or a photo. Its numbers are linear light, whatever the file stores.
 ---@class glint.picture
----@field width integer  pixels; only read
----@field height integer  pixels; only read
+---@field width integer  pixels; read-only
+---@field height integer  pixels; read-only
 local picture = {}
 
 --- Returns red, green and blue; (0, 0) is the top left.

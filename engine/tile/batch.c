@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#define SORTED_PRIMS 32 ///< in scenes with at most as many, packed hits are sorted by primitive; a power of 2
+#define SORTED_PRIMS 32 ///< packed hits are sorted by primitive in scenes with at most this many; a power of 2
 
 // ---- Before and after ----
 
@@ -273,8 +273,8 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
     return any;
 }
 
-/// Computes the light of one light, of consecutive samples of one, or of several similar lights. Returns the number
-/// of rows of the plan that were handled.
+/// Computes the illumination by one light, by consecutive samples of one light, or by several similar lights. Returns
+/// the number of rows of the plan that were handled.
 static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot, uint32_t end)
 {
     const glint_plan_light *lights = &frame->plan->lights[first];
@@ -363,7 +363,7 @@ void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const g
     sides[1] = glint_media_top(&beyond);
 }
 
-/// Returns the index on this side over the index beyond; 1 for a mirror that does not transmit.
+/// Returns the refractive index on this side divided by the index beyond; 1 for a mirror that does not transmit.
 static double ratio_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
     const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
@@ -446,8 +446,8 @@ void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, con
         ray->origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
 }
 
-/// Fills the share of totally reflected light. It has not crossed the surface, so all of it goes on, except for the
-/// share that a mirror sends already and the share that goes straight on.
+/// Fills the share of totally reflected light. This light has not crossed the surface, so all of it goes on, except
+/// for the share that a mirror already reflects and the share that goes straight on.
 static void total_share(const glint_bounce_material *m, double share[3])
 {
     const double all = 1 - m->clear;

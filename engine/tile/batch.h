@@ -13,16 +13,16 @@
 static inline double glint_weight(double x) { return x < GLINT_WEIGHT_MAX ? x : GLINT_WEIGHT_MAX; }
 
 typedef struct glint_batch {
-    glint_tile tile; ///< its samples are the rays' hits, packed; `group_count` and `active` say which exist
+    glint_tile tile; ///< samples are the packed hits of the rays; `group_count` and `active` say which exist
     glint_rays *rays; ///< the rays to cast
     glint_rays own; ///< the initial value of `rays`
     bool ordered; ///< every hit must have the sample of its ray's number
     bool distances; ///< only distances of hits are read; surfaces are not computed
     bool by_lane; ///< packed samples keep the lane of their ray
     bool whole; ///< every ray has the sample of its own number, even if it hits nothing
-    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< for each ray, before packing; real. `prim` likewise
+    _Alignas(64) double t[GLINT_TILE_SAMPLES]; ///< distance and primitive per ray, before packing; real
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
-    uint16_t with_sample[GLINT_TILE_GROUPS]; ///< not whole: the rays that have a sample
+    uint16_t with_sample[GLINT_TILE_GROUPS]; ///< rays that have a sample; not set if `whole`
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< the sample of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the ray of each sample
     double shown[3][GLINT_TILE_SAMPLES]; ///< the background seen by rays without a sample, if a program computes it
@@ -36,8 +36,8 @@ typedef struct glint_batch {
 /// The direction in which a ray goes on from a surface.
 typedef enum glint_branch {
     GLINT_BRANCH_MIRRORED,
-    GLINT_BRANCH_REFRACTED, ///< or totally reflected
-    GLINT_BRANCH_STRAIGHT, ///< through a translucent surface
+    GLINT_BRANCH_REFRACTED, ///< refracted or totally reflected
+    GLINT_BRANCH_STRAIGHT, ///< straight on through a translucent surface
     GLINT_BRANCHES
 } glint_branch;
 
@@ -70,7 +70,7 @@ void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TIL
 /// Computes the sums of the batch's tile: the light that surfaces, and in a whole batch the background, send back
 /// along the rays.
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any);
-/// Does the same for hits that are shaded per sample.
+/// Computes these sums only for the hits that are shaded per sample.
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// Returns the light of all local terms of sample `i`, in channel `c`.
 static inline double glint_batch_local_light(const glint_batch *batch, int c, uint32_t i)
@@ -104,16 +104,16 @@ void glint_batch_find_directions(glint_batch *batch, const glint_tile *tile, con
 /// and the media only in frames with transparent materials.
 void glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                            glint_ray *ray);
-/// Computes the weights of the rays that go on from sample `i`, after glint_batch_find_directions. In: the weight of
-/// the arriving ray for each. A ray that the material does not send gets 0.
+/// Computes the weights of the rays that go on from sample `i`, after glint_batch_find_directions. On entry, each
+/// weight is the weight of the arriving ray. A ray that the material does not send gets 0.
 void glint_batch_weigh(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        double weight[GLINT_BRANCHES][3]);
-/// Returns these rays, with weights; the last one only in frames with translucent surfaces. If batch->total is set,
-/// the first two have the same direction.
+/// Returns the rays that go on from a sample, with weights. The last ray is set only in frames with translucent
+/// surfaces. If batch->total is set, the first two rays have the same direction.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray rays[GLINT_BRANCHES]);
-/// Does the same for many samples: makes `rays` of the rays in `sent`, from ray 0 on, except for weights and slopes.
-/// Rays from a tile seen by the eye get their term, too.
+/// Fills `rays`, from ray 0 on, with the continued rays listed in `sent`, without weights and slopes. Rays from a
+/// tile seen by the eye get their term, too.
 void glint_batch_send(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                       const glint_sent *sent, glint_rays *rays);
 /// Returns the medium that a cast ray of the batch crossed since its last surface.

@@ -26,7 +26,7 @@ static void forget(glint_cached_tile *cached, uint32_t light_count)
     }
 }
 
-/// Returns whether hits and lights are those of the last frame, so that only shading may have to run.
+/// Returns whether hits and lights equal those of the last frame, so that at most shading has to run.
 static bool is_settled(const glint_reuse *reuse, const glint_plan *plan)
 {
     bool settled = reuse->caches_cast && plan->light_count == reuse->light_count;
@@ -42,7 +42,7 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
         plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
         return false;
     for (uint32_t i = 0; i < plan->light_count; i++)
-        if (plan->lights[i].light_samples) // one per lane
+        if (plan->lights[i].light_samples) // one light sample per lane
             return false;
     return true;
 }
@@ -90,7 +90,7 @@ static void prefetch_last_codes(const glint_tile *tile, const glint_image *last)
 static bool may_shine(const glint_cached_tile *cached, const glint_plan *plan)
 {
     if (!plan->powers || !glint_key_equal(cached->seen, plan->keys[GLINT_STAGE_SURFACE]))
-        return plan->powers; // the materials that it showed are unknown
+        return plan->powers; // the materials in the cached tile are unknown
     bool shines = cached->shown_count > GLINT_SHOWN_MAX;
     for (uint32_t i = 0; !shines && i < cached->shown_count; i++)
         shines = plan->materials[cached->shown[i]].highlight;
@@ -121,7 +121,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     }
     if (points)
         glint_prefetch(cached->t, GLINT_TILE_SAMPLES * reuse->real_size);
-    if (cached->only == GLINT_MISS) // its primitive gives the materials
+    if (cached->only == GLINT_MISS) // the single primitive gives the materials
         glint_prefetch(cached->prim, GLINT_TILE_SAMPLES * sizeof *cached->prim);
     if (glint_splits_are_on(&reuse->splits) && glint_key_equal(cached->split, reuse->splits.key))
         glint_prefetch(cached->values, glint_splits_bytes(&reuse->splits));
@@ -270,7 +270,7 @@ void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot
     cached->brightest = fmaxf(k ? cached->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
 }
 
-/// The same if nothing is hit.
+/// Records the materials of a sample without any hit.
 void glint_tile_note_nothing(const glint_tile *tile, uint32_t k)
 {
     if (k == 0) {
@@ -345,7 +345,7 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     glint_film_stamp now = stamp_of(tile, frame);
     if (plan->is_base && was->base != frame->refine->tiles[tile->index].pixels)
         return false;
-    if (plan->is_base) // it belongs to the pixels, not to their key in this frame
+    if (plan->is_base) // `is_base` is part of the pixels' stamp, not of their key
         now.base = was->base;
     if (!is_known(now.key) || !are_like(&now, was))
         return false;

@@ -46,7 +46,7 @@ void glint_tile_free_stage(glint_tile *tile, glint_stage_id id)
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
 {
     bool good = true;
-    tile->view.made = false; // it belongs to another frame
+    tile->view.made = false; // the view belongs to another frame
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         good = glint_tile_fit_stage(tile, plan, (glint_stage_id)id) && good;
     if (plan->is_base && !tile->differ)

@@ -59,7 +59,7 @@ bool glint_tile_wants_geometry(const glint_plan *plan)
     return plan->is_base || plan->desc.passes & GLINT_CENTRE_PASSES;
 }
 
-/// Returns the buffer for normals and object numbers before they are stored: for a base the buffer where they are
+/// Returns the buffer for normals and object numbers before they are stored. For a base, this is the buffer that is
 /// compared, with consecutive arrays; otherwise `own`.
 static float *geometry_of(const glint_tile *tile, const glint_tile_frame *frame, int value, float *own)
 {

@@ -7,18 +7,18 @@
 /// One ray, outside of the arrays.
 typedef struct glint_ray {
     double origin[3], direction[3], weight[3]; ///< the direction has length 1 within rounding
-    uint32_t leaving; ///< the primitive that it starts on
-    uint32_t pixel; ///< index of its sample in the tile
-    uint32_t point; ///< of a path of indirect light: the point where it started
+    uint32_t leaving; ///< the primitive that the ray starts on
+    uint32_t pixel; ///< index of the ray's sample in the tile
+    uint32_t point; ///< starting point of a path of indirect light
     uint32_t depth; ///< mirrors and refractions on its path so far
     uint32_t passes; ///< translucent surfaces that its path went straight through
     uint32_t scatters; ///< scatterings on its path so far
-    double path_length; ///< length of its path from the eye to its origin; in frames with programs
+    double path_length; ///< length of the path from the eye to the origin; only in frames with programs
     double least; ///< the weight below which a path of indirect light ends
-    uint16_t term; ///< the term that its light is added to
+    uint16_t term; ///< the term that the ray's light is added to
     bool inward;
-    bool sight; ///< true if its path has no reflection: the eye looks through surfaces along it
-    glint_media media; ///< in frames with transparent materials
+    bool sight; ///< true if the path has no reflection: the eye sees straight through the surfaces
+    glint_media media; ///< media around the ray; only in frames with transparent materials
 } glint_ray;
 
 struct glint_ray_slope;
@@ -35,7 +35,7 @@ typedef struct glint_rays {
     bool sight[GLINT_TILE_SAMPLES]; ///< only in frames that need coverage or have translucent surfaces
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray are undefined
     glint_media media[GLINT_TILE_SAMPLES];
-    struct glint_ray_slope *slopes; ///< in frames with derivatives: one per ray and derivative; otherwise undefined
+    struct glint_ray_slope *slopes; ///< one per ray and derivative, in frames with derivatives; otherwise undefined
 } glint_rays;
 
 /// Makes `rays` an empty set of groups.

@@ -46,7 +46,7 @@ glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &plan->lights[from + i];
         const uint16_t *open = light->shadows ? tile->at.light[i].unoccluded : tile->at.light[i].lit;
-        if (!tile->at.light[i].summed || !light->joined || i == 0) // otherwise it is in the sum
+        if (!tile->at.light[i].summed || !light->joined || i == 0) // otherwise the light is already in the sum
             lights[args.light_count++] = shade_light(tile, light, i, open);
     }
     if (!tile->transparent)

@@ -2,7 +2,7 @@
 #include "engine/base/vec.h"
 #include "engine/tile/tile.h"
 
-#define SPOT_SLACK 1e-3 ///< for a cosine: far more than its rounding error, also in float
+#define SPOT_SLACK 1e-3 ///< tolerance for a cosine, far above its rounding error, also in float
 
 /// Returns whether certainly no point of a box is in a spot's cone. Tests the direction from the apex to the ball
 /// around the box that is nearest to the axis.

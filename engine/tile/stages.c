@@ -131,8 +131,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, false);
 }
 
-/// Returns whether the box of the tile's points is known from an earlier frame. Only with one sample per pixel,
-/// because each of several samples has its own, smaller box.
+/// Returns whether the box of the tile's points is known from an earlier frame. False with several samples per pixel,
+/// because each sample has its own, smaller box.
 static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
 {
     return tile->cached && frame->plan->desc.samples == 1 &&
@@ -225,7 +225,7 @@ static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, co
     return !frame->count_work;
 }
 
-/// Sets a bound for highlights that were not computed: they are below what shade evaluates.
+/// Sets an upper bound for highlights that were not computed. They are too weak for shade to evaluate.
 static void bound_brightest(glint_tile *tile, const glint_tile_frame *frame, const glint_light_args *args,
                             const uint32_t *slot)
 {

@@ -69,7 +69,7 @@ typedef struct glint_tile_frame {
     const glint_image *base; ///< adaptive sampling: the picture with one sample per pixel; otherwise NULL
     glint_refine *refine; ///< the pixels of the base that get all samples; for a base, the data to compare
     const glint_image *last; ///< the last picture, of the same format, or NULL
-    glint_geometry_table geometry; ///< the plan's, with its index
+    glint_geometry_table geometry; ///< the plan's geometry, with its index
     const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< grids of some lights; NULL: that light has none
     uint32_t grid_count;
     const glint_stages *stages;
@@ -105,7 +105,7 @@ typedef struct glint_tile_sample {
     uint32_t *prim;
     uint16_t *hits;
     const uint32_t *only; ///< the primitive that all hits have in common; NULL: unknown
-    const glint_point_box *box; ///< around the points; NULL: unknown
+    const glint_point_box *box; ///< box around the points; NULL: unknown
     const uint16_t *sampled; ///< the hits that are shaded per sample
     struct {
         float *cosine, *attenuation, *log2_specular;
@@ -113,8 +113,8 @@ typedef struct glint_tile_sample {
         uint16_t *lit, *unoccluded;
         float *visible; ///< for lights with caps
         float brightest; ///< the largest log2_specular of the sample, or of all samples
-        bool summed; ///< samples of an area light: only their sum is stored, in the cosine and log2_specular of the
-            ///< first one, and each has the `lit` and `unoccluded` of all
+        bool summed; ///< for samples of an area light: only their sum is stored, in the cosine and log2_specular of the
+            ///< first sample; `lit` and `unoccluded` of each sample are those of all samples
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
     float *planes; ///< results of programs, see effects/pattern/plan.h; NULL in frames without programs
@@ -160,18 +160,18 @@ typedef struct glint_tile {
     glint_tile_surface surface;
     glint_tile_film film;
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
-    bool transparent; ///< the background is not visible: the eye's own rays in a frame with alpha
+    bool transparent; ///< the background adds no light: for the eye's own rays in a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS]; ///< lanes whose rays are followed
     glint_camera_args camera; ///< of the current sample
     glint_lens lens; ///< target of camera.lens
-    glint_cast_view view; ///< of the frame's cameras
+    glint_cast_view view; ///< view of the frame's cameras
     uint32_t sample; ///< number of the current sample
     uint32_t boxed; ///< samples so far whose points are in the cached box
     uint32_t painted, cached_samples; ///< samples so far with programs run; samples with cached results of first parts
     glint_tile_sample at;
     size_t index; ///< index of the tile in the picture
     glint_cached_tile *cached; ///< NULL: nothing is cached for this tile
-    bool direct; ///< its only sample gets light only from shade, without sums
+    bool direct; ///< the only sample gets light only from shade, without sums
 
     uint32_t x0, y0, width, height; ///< the part of the tile inside the image
     uint32_t group_count, groups_across;
@@ -185,11 +185,11 @@ typedef struct glint_tile {
     const struct glint_batch *batch; ///< the batch whose rays hit the samples; NULL: rays of the eye
     struct glint_raster_rest *raster_rest; ///< effects/raster/raster.c: hits of primitives other than triangles; NULL
         ///< until a frame needs it
-    struct glint_gathered *gathered; ///< of effects/adaptive/gather.c; NULL until a frame is adaptive
-    struct glint_differ_work *differ; ///< of effects/adaptive/differ.c; NULL until a frame is a base
-    uint64_t clock; ///< end of the last timed stage, ns
+    struct glint_gathered *gathered; ///< memory of effects/adaptive/gather.c; NULL until a frame is adaptive
+    struct glint_differ_work *differ; ///< memory of effects/adaptive/differ.c; NULL until a frame is a base
+    uint64_t clock; ///< end time of the last timed stage, ns
     glint_tile_counts counts;
-    void *shadow_scratch; ///< of occlude; owned; NULL until a frame has shadows of area lights
+    void *shadow_scratch; ///< scratch memory of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
     struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; for a batch
         ///< those of its tile
@@ -225,15 +225,15 @@ static inline const glint_tile_light *glint_tile_own_light(const glint_tile *til
 /// The current sample of a tile on its walk through the stages.
 typedef struct glint_sample_walk {
     uint32_t sample;
-    bool rays, points; ///< computed already
-    bool patterns; ///< computed, or no visible material has any
+    bool rays, points; ///< `rays`, `points`: already computed
+    bool patterns; ///< patterns are computed, or no visible material has patterns
     bool lit; ///< points and the result of the only light are computed, perhaps without normals
     bool centres; ///< the walk of the rays through the pixels' centres, which are not samples
-    bool shows; ///< its geometry is stored in the picture when normals are known
+    bool shows; ///< this walk's geometry is stored in the picture when normals are known
     bool any; ///< something is hit
     bool shines; ///< some hit is shaded per sample
     uint32_t from, count; ///< the current chunk of the plan's light rows; at GLINT_AT_LIGHT: the rows in `count` slots
-        ///< from `slot` on, of the chunk from `from` on
+        ///< number of rows from `slot` on, in the chunk that starts at row `from`
     uint32_t slot;
 } glint_sample_walk;
 
@@ -273,7 +273,7 @@ void glint_tile_use_own_light(glint_tile *tile, uint32_t slot);
 /// own. Memory is allocated only at the first sample: all samples of a tile are cached, or none. Returns whether the
 /// hits are known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
-/// Does the same for light `light` of the plan, in `slot`.
+/// Sets the results of light `light` of the plan, in `slot`, to cache memory in the same way.
 void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
                              bool *light_known, bool *occlude_known);
 /// Sets the keys of the cached arrays. Called after the last sample, because the keys cover all samples.
@@ -350,7 +350,7 @@ void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame,
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
 /// Shades `samples` consecutive samples in the tile's groups; the first one is number `first` of its pixel: together,
 /// or into the tile's sums; after the last sample resolves them. point_light: diffuse and specular light of faces and
-/// vertices, one pixel's samples after another's, `count` pixels; NULL: none. beauty: of the pixels.
+/// vertices, one pixel's samples after another's, `count` pixels; NULL: none. beauty: the light of the pixels.
 void glint_tile_shade_stacked(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count, uint32_t first,
                               uint32_t samples, const double (*point_light)[3][GLINT_TILE_SAMPLES], uint32_t count,
                               float *const beauty[3]);
@@ -398,7 +398,7 @@ void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *fram
 /// effects/environment/environment.c: a background computed by a program.
 /// Returns whether some ray may leave the scene: then the tile's rays are needed.
 bool glint_tile_sees_environment(const glint_tile *tile);
-/// Adds the background of such rays to the sums.
+/// Adds the background of the rays that leave the scene to the sums.
 void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/adaptive/differ.c: compares the stored pixels of a base, and keeps the pixels that neighbouring tiles
@@ -445,7 +445,7 @@ void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, 
 
 /// effects/adaptive/refine.c: returns whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
-/// Makes only these pixels active. Returns whether there are any.
+/// Makes only the chosen pixels active. Returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
 /// Returns whether all pixels of the tile come from the base. The picture then has them.
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);
@@ -466,10 +466,10 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
 /// Finds the points inside an absorbing medium, and returns whether there are any. The points
 /// must be known.
 bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
-/// After that: returns the lanes of group `g` whose light must be tinted even without an occluder.
+/// After glint_tile_find_dim: returns the lanes of group `g` whose light must be tinted even without an occluder.
 static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
 {
-    return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // it begins with them
+    return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // the stage's memory begins with these lanes
 }
 /// Computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal
 /// for GLINT_EMIT_CONE) must be known.
@@ -564,7 +564,7 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_has_shading_points(const glint_tile *tile);
 /// Adds the light of faces and vertices to the sums of these other hits; after `shade`. The points must be known.
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
-/// Does the same for other sums: diffuse and specular.
+/// Adds the light of faces and vertices to the given sums: diffuse and specular.
 void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES]);
 
 /// effects/raster/raster.c: scan conversion.
@@ -578,9 +578,9 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose
 /// shadows must be known. The points must be known.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
-/// For light through transparent surfaces, these are called: before the first step of its rays; when ray `ray`
-/// crosses a surface, at which `share` and `transmitted` multiply channel c of its colour; when it arrives at sample i;
-/// and when a light in `slot` is added to samples this way.
+/// Called for light through transparent surfaces: before the first step of the rays; when ray `ray` crosses a
+/// surface, where `share` and `transmitted` multiply channel c of the ray's colour; when the ray arrives at sample i;
+/// and when the light in `slot` is added to samples.
 void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan);
 void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
                             double color, double share, double transmitted);
@@ -592,7 +592,7 @@ void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, c
 /// their triangles, after their light.
 void glint_derive_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_derive_vertex(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted);
-/// effects/derivative/fade.c: after a sample of the eye's hits, if light fades.
+/// effects/derivative/fade.c: fades the derivatives after a sample of the eye's hits, if light fades.
 void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame);
 /// After the last sample: stores the derivatives in the image.
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame);
@@ -610,8 +610,8 @@ bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
-/// Prefetches the tile's pixel values and planes, which are written at its end; for planes of derivatives those of
-/// group g, a few lines at a time, because a core stalls on too many outstanding requests.
+/// Prefetches the tile's pixel values and planes, which are written at its end; for planes of derivatives, prefetches
+/// only the lines of group g, because a core stalls on too many outstanding requests.
 void glint_tile_prefetch_output(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);

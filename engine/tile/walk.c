@@ -3,11 +3,11 @@
 
 #include <string.h>
 
-#define TIMED_TILES 17 ///< one of this many; not a divisor of common picture widths in tiles
+#define TIMED_TILES 17 ///< one of this many tiles is timed; not a divisor of common picture widths in tiles
 
 // ---- A sample ----
 
-/// Computes the points of the listed lanes only: their programs read nothing else.
+/// Computes the points of the listed lanes only, because their programs read no other lanes.
 static void need_painted(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *w)
 {
     uint16_t painted[GLINT_TILE_GROUPS];

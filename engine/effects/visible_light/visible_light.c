@@ -17,7 +17,7 @@ struct glint_visible_light {
     uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light; first: see glint_tile_sees_light
     uint32_t *near; ///< the lights that the current rays may see
     uint32_t near_count;
-    uint32_t which[GLINT_TILE_SAMPLES]; ///< that light
+    uint32_t which[GLINT_TILE_SAMPLES]; ///< the light that each ray sees
 };
 
 static void *create(const glint_plan *plan)
@@ -50,7 +50,7 @@ static struct glint_visible_light *own_of(const glint_tile *tile) { return tile-
 
 typedef struct visible_light_ray {
     double origin[3], direction[3];
-    double slack; ///< of the frame's precision
+    double slack; ///< slack for the frame's precision
 } visible_light_ray;
 
 /// Returns the first hit of a ray with a sphere, or its exit if the ray begins inside; 0: none. The formula is that
@@ -71,7 +71,7 @@ static double intersect_ball(const glint_plan_visible_light *visible_light, cons
     return (c <= 0 && b >= 0 ? q / a : c / q) / scale;
 }
 
-/// Returns the height of a point above the light's plane; 0 if rounding hides its side.
+/// Returns the height of a point above the light's plane; 0 if rounding error may exceed the height.
 static double height_over(const glint_plan_visible_light *visible_light, const double point[3], double lengths,
                           double slack)
 {
@@ -119,8 +119,8 @@ static bool is_inside(const glint_plan_visible_light *visible_light, const visib
     return height_over(visible_light, p, vec_max_abs(offset) + vec_max_abs(ray->origin), ray->slack) == 0;
 }
 
-/// Returns the light that a ray hits before its surface at `*t`; GLINT_MISS: none. At equal distance, the light
-/// defined first.
+/// Returns the light that a ray hits before its surface at `*t`; GLINT_MISS: none. At equal distances, returns the
+/// light defined first.
 static uint32_t see(const struct glint_visible_light *visible_light, const glint_plan *plan,
                     const visible_light_ray *ray, double *t)
 {
@@ -140,7 +140,7 @@ static uint32_t see(const struct glint_visible_light *visible_light, const glint
 
 // ---- The lights of a tile ----
 
-/// Returns whether a ball is outside the side of a pyramid of rays that two of its edges span.
+/// Returns whether a ball is outside one side of a pyramid of rays. a, b: the two edges that span the side.
 static bool beyond_side(const double a[3], const double b[3], const double middle[3], const double away[3],
                         double radius)
 {
@@ -285,7 +285,7 @@ static glint_key position_key(const glint_plan_visible_light *visible_light, gli
     return glint_key_add(key, visible_light->edges, visible_light->edge_count * sizeof *visible_light->edges);
 }
 
-/// Hashes the places of visible lights; their brightness belongs to the background.
+/// Hashes the positions of visible lights. The key of the background includes their brightness.
 static glint_key positions_key(const glint_plan *plan, glint_key key)
 {
     for (uint32_t i = 0; i < plan->visible_light_count; i++)
