@@ -11,7 +11,7 @@ local P = glint.params {
   mortar = { 0.05, min = 0.005, max = 0.2, doc = "width of a joint, world units" },
 }
 
-local WIDTH <const>, HEIGHT <const> = 0.8, 0.3 -- of a brick including its joint, world units
+local WIDTH <const>, HEIGHT <const> = 0.8, 0.3 -- size of a brick including its joint, world units
 
 -- Returns the distance of a point from the middle of the nearest joint, and the brick that contains the point.
 local function lay(p)

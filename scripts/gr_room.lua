@@ -1,6 +1,6 @@
 -- A room of the gr dialect's variants: planes, an area light and a column: glint --dialect gr scripts/gr_room.lua
 
-gr.options.plane = 'xz' -- of edge 1 around the origin; other variants have other squares
+gr.options.plane = 'xz' -- a square of edge 1 around the origin; other variants have other squares
 gr.options.axis = 'y'   -- in the variants z, as in the course
 
 white = gr.material({0.7, 0.7, 0.68}, {0, 0, 0}, 0)

@@ -50,7 +50,7 @@ local function along(share)
   return x
 end
 
-local size = length / (P.links - 1) / (2 - 2.6 * P.thickness) * 0.97 -- of a link: neighbours nearly touch
+local size = length / (P.links - 1) / (2 - 2.6 * P.thickness) * 0.97 -- size of a link: neighbours nearly touch
 for i = 1, P.links do
   local x = along((i - 1) / (P.links - 1))
   scene:add(glint.torus {

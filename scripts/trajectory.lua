@@ -1,7 +1,7 @@
 -- A trajectory, frame by frame: particles in the cell they repeat in, with axes along it, coloured by a column.
 --     glint scripts/trajectory.lua -o film.mp4                             a wave runs through a crystal
 --     glint scripts/trajectory.lua --set file=melt.dump --set column=c_pe --set map=magma --set low=-7 --set high=-5
---     glint scripts/trajectory.lua --set file=run.xyz -f 90                one frame; those before are read over once
+--     glint scripts/trajectory.lua --set file=run.xyz -f 90                one frame; earlier frames are skipped once
 -- `glint.xyz` and `glint.lammps` continue from the previous frame: a film reads the file once.
 local glint = require "glint"
 local particles, boxes = require "glint.particles", require "glint.box"
@@ -67,6 +67,6 @@ end
 
 local frames = film:length()
 scene.camera = show(0, 1):camera { from = { -0.75, -1.5, 1.05 }, up = { 0, 0, 1 },
-  margin = 1.15 } -- for the first frame; leaves space for numbers
+  margin = 1.15 } -- fits the first frame; leaves space for the numbers
 return glint.animation { scene = scene, frames = frames, cyclic = is_own, fps = 24, width = 800, height = 600,
   samples = 4, frame = show }

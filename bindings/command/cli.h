@@ -70,10 +70,10 @@ typedef struct cli_options {
     bool shows_source; ///< publish shows the script's source
     bool is_live; ///< --live
     const char *live_script; ///< script of --live; NULL: the script itself
-    int64_t columns, difference; ///< of sheet; 0: not given
-    double gain, label_size; ///< of sheet; 0: not given
+    int64_t columns, difference; ///< for sheet; 0: not given
+    double gain, label_size; ///< for sheet; 0: not given
     bool transparent; ///< of sheet
-    int64_t frame; ///< of explain
+    int64_t frame; ///< number of the frame that explain describes
     double fail, warn; ///< limits for compare
     cli_sweep *sweeps;
     size_t sweep_count;
@@ -231,7 +231,7 @@ typedef struct cli_script {
     int64_t frames; ///< number of frames of the jobs that the script returned
     bool has_jobs;
     int jobs; ///< reference to the list of jobs, in the mode GLINTL_MODE_WATCH
-    cli_lua_memory memory; ///< of an untrusted script
+    cli_lua_memory memory; ///< memory of an untrusted script
 } cli_script;
 
 /// Runs the script and renders what it returns. Returns false when the run failed or was interrupted.
@@ -289,6 +289,6 @@ int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run);
 int cli_new(const cli_options *options, cli_output *output);
 int cli_join(const cli_options *options, cli_output *output);
 int cli_version(const cli_options *options, cli_output *output);
-int cli_help(const cli_options *options, cli_output *output); ///< help for a command, or for glint as a whole
+int cli_help(const cli_options *options, cli_output *output); ///< prints the help for a command or for glint
 
 #endif

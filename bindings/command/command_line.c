@@ -57,7 +57,7 @@ static bool complain_unknown(const char *text, char *message)
 // Writes the message when getopt_long returned '?' or ':'.
 static bool complain(int what, const char *given, int code, char *message)
 {
-    if (code > 0xff) { // a long option of ours: its value is missing, or it takes none
+    if (code > 0xff) { // a long option of glint: its value is missing, or the option takes no value
         const char *name = cli_option_list[code - 0x100].name;
         snprintf(message, MESSAGE, "--%s: %s", name, what == ':' ? "a value is missing" : "it takes no value");
         return false;

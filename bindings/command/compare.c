@@ -66,7 +66,7 @@ static void print_for_people(FILE *out, char **files, const glint_compare_result
         fprintf(out, " at %d, %d, channel %d", result->max_x, result->max_y, result->max_channel);
     fputc('\n', out);
     print_share(out, result->failed, result->pixels, desc->fail);
-    if (desc->warn != desc->fail) // otherwise it would be the same line
+    if (desc->warn != desc->fail) // equal limits would print the same line twice
         print_share(out, result->warned, result->pixels, desc->warn);
 }
 

@@ -102,7 +102,7 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
         fputs(",\"shifted\":", out);
         glintL_json_number(out, (double)record->stats.shifted / record->pixel_count);
     }
-    if (record->kept) { // its pixels were not read
+    if (record->kept) { // the pixels of a kept frame were not read
         fputs(",\"clipped\":null,\"nonfinite\":null}", out);
     } else {
         fputs(",\"clipped\":", out);

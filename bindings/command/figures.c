@@ -44,7 +44,7 @@ static bool find_map(const char *name, glint_colormap *out, char message[GLINTL_
     return false;
 }
 
-// Reads MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: it is neither, and the message says so.
+// Reads MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: the text has neither form, and the message says so.
 static bool read_colorbar(const char *text, glint_overlay_desc *bar, char message[GLINTL_MESSAGE_SIZE])
 {
     char map[32];

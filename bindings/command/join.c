@@ -92,7 +92,7 @@ static bool read_part(join *j, size_t i)
 
 // ---- The whole ----
 
-// Lists the text entries of the whole frame's file, in their order.
+// Lists the text entries of the whole frame's file, in the order of the file.
 static size_t list_texts(const join *j, glint_text texts[GLINTL_TEXT_COUNT])
 {
     static const char *const keywords[] = { "Software",     "glint:key",    "glint:script", "glint:source",

@@ -69,7 +69,7 @@ static void take_exposure(cli_options *options, cli_output *output, glintL_run *
     report_exposure(output, stops, seen);
 }
 
-// Sets the range. Without one there is nothing to show in colours, and a warning says so.
+// Sets the range. If there is no range, no pass is shown in colours, and a warning says so.
 static void take_range(cli_options *options, cli_output *output, glintL_run *run, const double range[2])
 {
     const char **text = &run->request.render_text[glintL_render_find("colormap")];

@@ -14,7 +14,7 @@
 #define ALL (SHOWN | FILES | CLI_PUBLISH | CLI_COMPLETION | CLI_HELP)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
-// The fields of scene:render{} that relight accepts as options: those about the picture, after the light is known.
+// The fields of scene:render{} that relight accepts as options: the fields that convert light to a picture.
 enum {
     RELIGHTS_samples, RELIGHTS_seed = 0, RELIGHTS_precision = 0, RELIGHTS_alpha = 0, RELIGHTS_outline = 0,
     RELIGHTS_visibility = 0, RELIGHTS_bits = CLI_RELIGHT, RELIGHTS_transfer = CLI_RELIGHT, RELIGHTS_rounding = CLI_RELIGHT,

@@ -33,7 +33,7 @@ bool cli_finish_frames(glintL_run *run, bool good)
 {
     good = glintL_run_collect(run, true) && good; // submitted frames are finished in any case
     good = good && !run->interrupted && glintL_films_finish(run);
-    // Calls in a loop are counted as they occur, so only now is it known how many the selection leaves.
+    // Calls in a loop are counted as they occur. Only now is the number of selected calls known.
     good = good && (run->count == 0 || glintL_selection_settle(run, 1, run->count));
     if (good)
         cli_warn_clipped(run);

@@ -126,7 +126,7 @@ static int watch_child(watched *child, const sigset_t *signals)
         else if (glintL_now_ms() >= child->until_ms)
             end_child(child, LATE, SIGTERM);
         else if (!child->ended_by && has_written_too_much(child))
-            end_child(child, TOO_MUCH, SIGKILL); // it would continue to write until it handled a signal
+            end_child(child, TOO_MUCH, SIGKILL); // with a mere signal it would continue to write
     }
 }
 

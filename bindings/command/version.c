@@ -7,8 +7,7 @@
 
 static const char *const KERNELS[] = { "ref", "generic", "avx2", "avx512" };
 
-// Prints the kernels that the build has and the machine can run. False: out of memory; a kernel would seem to be
-// missing.
+// Prints the kernels that the build has and the machine can run. False: out of memory. The list is then incomplete.
 static bool print_kernels(FILE *out)
 {
     glint_renderer *renderer = NULL;

@@ -6,15 +6,15 @@
 
 #include "bindings/cost/cost.h"
 
-#define RUNS 11 // of each setting, not counting the first
+#define RUNS 11 // timed runs of each setting, not counting the first
 #define RUNS_QUICK 5
 #define MORE_RUNS 3 // factor of runs for settings whose quartile range overlaps a neighbour's
 #define RUN_MS 30.0 // short frames are repeated until a run takes this long
 #define RUN_QUICK_MS 5.0
-#define ALLOWANCE_MS 45e3 // time for the reference beyond the samples that it needs at least
+#define ALLOWANCE_MS 45e3 // time for the reference, in addition to the minimum number of samples
 #define ALLOWANCE_QUICK_MS 5e3
 #define BUDGET_SHARE 0.3 // share of a budget for the reference
-#define BASE_FRAMES 3 // one run that is dropped, one that counts the work, one that is timed
+#define BASE_FRAMES 3 // frames: one that is dropped, one that counts the work, one that is timed
 #define LONG_MS 120e3 // a longer study is announced
 
 // ---- The scene ----

@@ -32,7 +32,7 @@
 
 typedef struct cost_shaded {
     glint_shape *shape; ///< borrowed
-    glint_shading shading; ///< before the edit
+    glint_shading shading; ///< shading before the edit
 } cost_shaded;
 
 /// A copy of the scene whose spheres have other segments.
@@ -77,9 +77,9 @@ glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error 
 
 typedef struct cost_meshes {
     size_t count, globe_count; ///< meshes, and the spheres made of triangles among them; instances count
-    bool is_mixed; ///< their shading differs
-    glint_shading shading; ///< of one of them
-    double segments; ///< of all spheres of triangles; 0: not the same for all
+    bool is_mixed; ///< the meshes have different shadings
+    glint_shading shading; ///< shading of one of the meshes
+    double segments; ///< segments of all spheres of triangles; 0: they differ
 } cost_meshes;
 
 cost_meshes cost_scene_meshes(const cost_scene *scene);
@@ -113,7 +113,7 @@ typedef struct cost_value {
 
 /// The frame that a knob is applied to.
 typedef struct cost_subject {
-    const glint_plan *plan; ///< of the frame with the script's own settings
+    const glint_plan *plan; ///< plan of the frame with the script's own settings
     const glintL_render *render;
     const cost_scene *scene;
     const cost_moments *moments;
@@ -135,20 +135,20 @@ typedef struct cost_draft {
     cost_scene *scene;
     glintL_render render;
     int shutter_times; ///< 0: the frame is an instant
-    bool reuses; ///< rendered after the neighbouring frame, with its cached results
+    bool reuses; ///< rendered after the neighbouring frame, using that frame's cached results
 } cost_draft;
 
 typedef enum cost_source {
-    COST_ERROR_FILM, ///< of the linear light, before pixel values
-    COST_ERROR_FILE ///< of the pixel values in the file
+    COST_ERROR_FILM, ///< error of the linear light, before pixel values
+    COST_ERROR_FILE ///< error of the pixel values in the file
 } cost_source;
 
 typedef struct cost_knob {
-    const char *name; ///< as printed
+    const char *name; ///< name as printed
     const char *needs; ///< what a scene needs to respond: "a light that casts shadows"
-    cost_source source; ///< where its error arises
-    bool combines; ///< it trades accuracy for time, so combinations with other knobs are tried
-    bool is_other_time; ///< its times are not of a whole frame, so its rows are not on the front
+    cost_source source; ///< stage where the knob's error arises
+    bool combines; ///< the knob trades accuracy for time, so combinations with other knobs are tried
+    bool is_other_time; ///< the times are not times of a whole frame, so the rows are not on the front
     /// Lists the values, if the plan shows that the scene responds.
     void (*list)(const cost_subject *subject, cost_values *out);
     glint_status (*apply)(cost_draft *draft, cost_value value, glint_error *error);
@@ -182,18 +182,18 @@ typedef enum cost_part { COST_RENDER, COST_TONE, COST_ENCODE, COST_TOTAL, COST_C
 
 /// A setting to measure. Several rows may show it.
 typedef struct cost_case {
-    int choice[COST_KNOBS_MAX]; ///< the value of each knob; -1: as in the base
-    int bits; ///< of the file, once it was run
+    int choice[COST_KNOBS_MAX]; ///< index of each knob's value; -1: as in the base
+    int bits; ///< bits of the file, once the case was run
     bool needs_file; ///< a row shows the error of the file
-    double estimate_ms; ///< of a run, with its overhead
+    double estimate_ms; ///< time of a run, with its overhead
     int batch; ///< frames in a run, to make it long enough to be timed; 0: one
-    double guess_ms, guess_cpu_ms; ///< of a frame without overhead, from before the timed runs
+    double guess_ms, guess_cpu_ms; ///< estimated times of a frame without overhead, before the timed runs
     int run_count;
     double ms[COST_PART_COUNT][COST_RUNS_MAX];
-    cost_quartiles time[COST_PART_COUNT]; ///< of the runs, by cost_summarize
+    cost_quartiles time[COST_PART_COUNT]; ///< quartiles of the runs, by cost_summarize
     bool is_first_alone; ///< the only run is the first, which is dropped when there are more
-    bool is_left_out; ///< not timed, for lack of budget
-    glint_frame_stats stats; ///< of the last run
+    bool is_left_out; ///< not timed, because the budget is too small
+    glint_frame_stats stats; ///< statistics of the last run
     glint_work work;
     bool is_counted; ///< `work` is known
     bool has_error;
@@ -207,7 +207,7 @@ typedef struct cost_case {
 typedef struct cost_decisions {
     float *object; ///< owned; the object's number, 0: background
     uint8_t *lit; ///< owned; light_count planes: whether light i reaches the pixel
-    size_t light_count; ///< 1 if there are too many lights to check each
+    size_t light_count; ///< number of lights checked; 1 if there are too many to check each
 } cost_decisions;
 
 typedef struct cost_row {
@@ -217,7 +217,7 @@ typedef struct cost_row {
     char label[COST_LABEL_SIZE]; ///< the value, or "samples=16 precision=float"
     bool is_default, is_front, is_resolved, is_partial;
     double x_fastest;
-    int difference; ///< from the script's own time: -1 faster, 1 slower, 0 within the quartile range
+    int difference; ///< relative to the script's own time: -1 faster, 1 slower, 0 within the quartile range
     bool is_apart; ///< its quartile range overlaps neither neighbour's in the order of times
 } cost_row;
 
@@ -227,28 +227,28 @@ typedef struct cost_study {
     const cli_options *options;
     cost_scene scene;
     cost_moments *moments; ///< owned
-    int shutter_times; ///< the script's own, if there are moments; 0: an instant
+    int shutter_times; ///< the script's own number, if there are moments; 0: an instant
     const glintL_render *own;
-    cost_values values[COST_KNOBS_MAX]; ///< for each knob; count 0: not selected, or the scene does not respond
+    cost_values values[COST_KNOBS_MAX]; ///< values of each knob; count 0: not selected, or the scene does not respond
     glint_renderer *renderers[2][2]; ///< [reuses][counts work]; owned, except the run's own renderer
     cost_case *cases; ///< number 0 is the base
     int case_count;
     cost_row *rows;
     int row_count;
     int runs; ///< runs of each case, not counting the first
-    int most_runs; ///< of a case whose quartile range overlaps a neighbour's
+    int most_runs; ///< runs of a case whose quartile range overlaps a neighbour's
     double run_ms; ///< least time of a run
     double overhead_ms; ///< time to find the error of a picture
     double start_ms, deadline_ms; ///< deadline 0: none
     uint64_t random;
 
-    double reference_samples; ///< of each part; 0: no reference
+    double reference_samples; ///< samples of each part; 0: no reference
     double reference_seed[COST_REFERENCE_PARTS];
     glint_reference *reference; ///< the mean of the parts
-    glint_picture_error reference_error; ///< of the mean, estimated from the differences of the parts
-    cost_decisions truth; ///< of the base, computed in double
+    glint_picture_error reference_error; ///< error of the mean, estimated from the differences of the parts
+    cost_decisions truth; ///< decisions of the base, computed in double
     bool is_complete; ///< not interrupted
-    char *live; ///< of --live: HTML for the page; owned; NULL: none
+    char *live; ///< HTML of --live for the page; owned; NULL: none
 
     char **left_out; ///< owned lines: what the budget or the scene excluded
     int left_out_count;
@@ -306,7 +306,7 @@ bool cost_measure(cost_study *study, cost_case *c);
 
 // ---- cost/timing.c ----
 
-double cost_left_ms(const cost_study *study); ///< of the budget; infinite without one
+double cost_left_ms(const cost_study *study); ///< time left in the budget; infinite without a budget
 /// Runs all cases, one at a time, in random order; then repeats those whose quartile range overlaps a neighbour's, up
 /// to the most runs or the budget's end.
 bool cost_time_cases(cost_study *study);
@@ -315,7 +315,7 @@ double cost_time_ms(const cost_case *c); ///< the median of COST_CPU, by which r
 double cost_quartile_range(const cost_case *c); ///< of COST_CPU
 /// Returns whether a case's quartile range overlaps neither neighbour's in the order of times.
 bool cost_is_apart(const cost_study *study, int index);
-double cost_round_ms(const cost_study *study); ///< time to run every case once that is not left out, as far as known
+double cost_round_ms(const cost_study *study); ///< time to run every case that is not left out once, as far as known
 /// Shows the current step on a terminal, with the expected time of this step and of the rest of the study.
 void cost_show(const cost_study *study, const char *what, double step_ms, double remaining_ms);
 

@@ -9,7 +9,7 @@
 #define LIT 0x1p-10 // less than a quarter of an 8-bit step: a surface lit at grazing angles counts as dark
 #define BATCH_MAX 1000 // frames in a run
 #define TIMES 32 // samples of each reference part, relative to the script's
-#define LEAST_TIMES 2 // the same if a budget forces fewer; with less the errors mean nothing
+#define LEAST_TIMES 2 // minimum of TIMES if a budget forces fewer samples; with fewer the errors mean nothing
 
 // ---- Decisions ----
 

@@ -230,7 +230,7 @@ static glint_status apply_model(cost_draft *draft, cost_value value, glint_error
 
 // ---- segments: spheres of triangles, compared with the exact sphere ----
 
-#define TRIANGLES_MAX 0x1p21 // of all spheres together; no setting exceeds it
+#define TRIANGLES_MAX 0x1p21 // limit of the triangles of all spheres together; no setting exceeds it
 
 // Lists the segments. The truth is the exact sphere, which the triangles approximate.
 static void list_segments(const cost_subject *subject, cost_values *out)

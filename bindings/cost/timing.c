@@ -100,8 +100,8 @@ static bool run_round(cost_study *study, int *order, int count, double remaining
 
 static bool is_timed(const cost_case *c) { return !c->is_left_out && c->run_count > 0; }
 
-// Lists the timed cases; with `more`, only those too close to a neighbour that may run again. *ms: the time of one
-// round.
+// Lists the timed cases; with `more`, only cases that are too close to a neighbour and may run again. *ms: the time
+// of one round.
 static int list_cases(cost_study *study, bool more, int *order, double *ms)
 {
     int count = 0;

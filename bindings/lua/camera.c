@@ -7,11 +7,11 @@
 
 #define SQUARE 1e-3 // largest deviation of a matrix from a rotation: enough for numbers with four digits
 
-// A camera looks at a point or along a direction; the unused one reads nil.
+// A camera looks at a point or along a direction; the unused field reads nil.
 typedef struct desc_type {
     glint_camera_desc camera;
     bool has_eye, has_at;
-    bool has_matrix; // of the table being read
+    bool has_matrix; // whether the table being read has a matrix
     glintL_distance focus;
 } desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");

@@ -21,7 +21,7 @@ static void add_child(lua_State *L, int index, int value, const char *path)
     snprintf(key, sizeof key, "%p", glintL_test_object(L, value, GLINTL_SHAPE));
     glintL_keep(L, index, key, value);
     glint_shape *group = check_group(L, index), *child = glintL_test_object(L, value, GLINTL_SHAPE);
-    if (!child) // a finalizer has closed it
+    if (!child) // a finalizer has closed the child
         glintL_refuse(L, value, path, "shape");
     glintL_check_status(L, "", &error, glint_group_add(group, child, &error));
 }

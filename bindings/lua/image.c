@@ -138,7 +138,8 @@ static int pixel(lua_State *L)
     return channels;
 }
 
-// Reads the name of a map, "viridis:1:9" with its range, or nil, on top of the stack; pops it.
+// Reads the name of a colour map such as "viridis", with a range ("viridis:1:9"), or nil, from the top of the stack,
+// and pops it.
 static void take_colormap(lua_State *L, glint_write_desc *desc)
 {
     static const glintL_field name = { .name = "colormap", .type = GLINT_TYPE_CHOICE, .names = glintL_pass_colormaps };

@@ -7,7 +7,7 @@
 #define KEPT_IMAGE "glint.kept_image"
 
 typedef struct kept_image {
-    glintL_box box; // of the image that it becomes
+    glintL_box box; // box of the image that the userdata becomes
     glint_plan *plan; // owned; a snapshot of the scene
 } kept_image;
 
@@ -49,7 +49,7 @@ static void become_image(lua_State *L)
     glint_plan_destroy(kept->plan);
     kept->plan = NULL;
     kept->box.object = image;
-    luaL_setmetatable(L, GLINTL_IMAGE); // whose metamethods release it from now on
+    luaL_setmetatable(L, GLINTL_IMAGE); // the metamethods of the image release the userdata from now on
 }
 
 static int read_member(lua_State *L)

@@ -11,7 +11,7 @@ typedef struct glintL_many {
     const char *object, *each; ///< "spheres", "sphere"
     int material, materials, index; ///< positions of the fields
     int index_buffer, pointers; ///< positions of memory
-    int kept; ///< position of the list that retains the materials; nil without any
+    int kept; ///< position of the list that retains the materials; nil without materials
 } glintL_many;
 
 /// Counts the materials, allocates their pointers, and makes the list that retains them. NULL: there are none.

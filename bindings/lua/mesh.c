@@ -7,7 +7,7 @@
 
 typedef struct arguments {
     glint_mesh_desc desc;
-    unsigned format; // of packed numbers: 0 not packed, 1 f32, 2 f64
+    unsigned format; // format of packed numbers: 0 not packed, 1 f32, 2 f64
     double center[3], radius, segments;
 } arguments;
 

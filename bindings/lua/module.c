@@ -5,7 +5,7 @@
 #include "bindings/run/run.h"
 #include "bindings/run/system.h"
 
-typedef struct members { // of the module's table, at `index`
+typedef struct members { // members of the module's table, which is at `index`
     lua_State *L;
     int index;
 } members;
@@ -102,7 +102,7 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_setfield(L, -2, "version");
     lua_pushcfunction(L, list_fields); // only for the test of meta/glint.lua
     lua_setfield(L, -2, "_fields");
-    lua_pushcfunction(L, glintL_list_rows); // the same, and for bindings/meta/fill.lua
+    lua_pushcfunction(L, glintL_list_rows); // only for that test, and for bindings/meta/fill.lua
     lua_setfield(L, -2, "_rows");
     lua_pushcfunction(L, other_kind);
     lua_setfield(L, -2, "_other_kind");

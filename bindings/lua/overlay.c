@@ -280,8 +280,8 @@ static const char *const HIDDEN[] = { "drawn", "dashed", "none", NULL };
 
 #define HEX(color, shift) ("0123456789abcdef"[(color) >> (shift) & 15])
 
-// Reads the name of a map, a list of colours or, only in the constructor, a function: calling it for an existing bar
-// might close the bar.
+// Reads the name of a map, a list of colours or, only in the constructor, a function: calling the function for an
+// existing bar might close the bar.
 static void read_map(lua_State *L, int index, const char *path, void *desc)
 {
     static const glintL_field name = { .name = "map", .type = GLINT_TYPE_CHOICE, .names = glintL_colormaps };

@@ -16,7 +16,7 @@ static int push_result(lua_State *L, glintL_dual d)
 
 typedef struct function {
     const char *name;
-    double (*value)(double x), (*slope)(double x, double y); // y: the value at x
+    double (*value)(double x), (*slope)(double x, double y); // value and slope of the function; y: the value at x
 } function;
 
 static double slope_sin(double x, double y) { return (void)y, glint_cos(x); }

@@ -1375,7 +1375,7 @@ function glint.stripe(x, footprint) end
 --- Bricks of one by one unit in x and y, with every other row shifted by half a brick: 1 on a brick, 0 on the mortar
 --- along its left and lower sides. With a footprint, the mean over that width.
 ---@param p glint.values
----@param mortar? number  its width. Default 0.1
+---@param mortar? number  width of the mortar. Default 0.1
 ---@param footprint? number
 ---@return number
 function glint.brick(p, mortar, footprint) end

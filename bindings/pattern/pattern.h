@@ -81,7 +81,7 @@ glintL_term glintL_dot_terms(lua_State *L, const glintL_term a[3], const glintL_
 /// Reads an operand. False: the value is not a number, symbol, vector, triple, list of three of them, or (if
 /// allow_color) name of a colour.
 bool glintL_to_operand(lua_State *L, int index, bool allow_color, glintL_operand *out);
-/// The same, but raises "<path>: number, symbol or vector expected, got ...".
+/// Reads an operand, but raises "<path>: number, symbol or vector expected, got ...".
 void glintL_read_operand(lua_State *L, int index, const char *path, glintL_operand *out);
 /// Reads one number or symbol.
 glintL_term glintL_read_term(lua_State *L, int index, const char *path);
@@ -99,7 +99,7 @@ void glintL_set_arithmetic(lua_State *L);
 void glintL_set_operators(lua_State *L);
 /// Pushes a triple; three plain numbers become a vector.
 void glintL_push_triple(lua_State *L, const glintL_term v[3]);
-/// The same for red, green, blue and alpha, with a field `a`.
+/// Pushes red, green, blue and alpha as a triple with a field `a`.
 void glintL_push_color(lua_State *L, const glintL_term v[4]);
 
 // ---- input.c ----
@@ -141,7 +141,7 @@ void glintL_compare_points(lua_State *L, int index, const glintL_traced *traced)
 /// compared.
 typedef struct glintL_pattern {
     glint_program_kind kind;
-    glint_texture *texture; ///< of glint.texture, whose user value 1 has its fields; NULL: a function
+    glint_texture *texture; ///< texture of glint.texture, whose user value 1 has its fields; NULL: a function
 } glintL_pattern;
 
 /// Returns a pattern, shader or texture; NULL: the value at index is none.

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const char PATTERNED; // its address is the registry key for materials with patterns, as weak keys
-static const char CLOSED; // the same for userdata that a script has closed, whose materials may still be in a scene
+static const char CLOSED; // registry key for closed userdata whose materials may still be in a scene
 
 void glintL_refuse_within_trace(lua_State *L, const char *what)
 {
@@ -194,7 +194,7 @@ void glintL_trace_material(lua_State *L, int index)
 
 typedef struct entry {
     const glint_material *material;
-    lua_Integer position; // of its userdata, in a list
+    lua_Integer position; // position of the object's userdata in a list
     size_t order; // number of the scene's background, from 1; 0: another scene's
 } entry;
 

@@ -7,9 +7,9 @@
 #include <string.h>
 
 typedef struct symbol {
-    uint64_t serial; // of its trace
+    uint64_t serial; // serial number of the symbol's trace
     glint_value value;
-    uint32_t choice; // the number of its choice, from 1 on; 0: not a choice
+    uint32_t choice; // number of the choice, from 1 on; 0: not a choice
 } symbol;
 
 typedef struct traces {

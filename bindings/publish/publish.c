@@ -12,7 +12,7 @@
 #include "bindings/run/system.h"
 
 #define FILES_MAX 256
-#define FILE_BYTES_MAX ((size_t)64 << 20) // of one file that the script reads
+#define FILE_BYTES_MAX ((size_t)64 << 20) // limit of one file that the script reads
 
 static const char TRACK_LUA[] = {
 #include "bindings/watch/track.lua.h"
@@ -31,7 +31,7 @@ typedef struct publication {
     glintL_run *run;
     cli_script script;
     struct {
-        char *path, *name; // of a file that the script reads, and its name in the page; owned
+        char *path, *name; // path of a file that the script reads, and its name in the page; owned
     } files[FILES_MAX];
     size_t file_count;
     glint_image *image; // of the frame

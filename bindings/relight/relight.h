@@ -6,7 +6,7 @@
 
 /// The settings of --light for one light.
 typedef struct relight_light {
-    const char *name; ///< as written in the option, `length` bytes
+    const char *name; ///< name as written in the option, `length` bytes
     size_t length;
     bool has_strength, has_color;
     double strength; ///< 1: unchanged

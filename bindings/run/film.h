@@ -42,7 +42,7 @@ void glintL_film_tell(const glintL_run *run, const glintL_film *film, size_t don
 // ---- film_pipe.c ----
 
 bool glintL_has_ffmpeg(void);
-/// The same for the formats that ffmpeg writes.
+/// Makes a film in one of the formats that ffmpeg writes.
 int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
 
 #endif

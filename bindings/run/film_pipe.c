@@ -13,8 +13,8 @@
 #include "bindings/run/film.h"
 #include "bindings/run/system.h"
 
-#define WAIT_MS 50 // between checks for an interrupt
-#define GRACE_MS 2000 // from SIGTERM to SIGKILL
+#define WAIT_MS 50 // time between checks for an interrupt
+#define GRACE_MS 2000 // time from SIGTERM to SIGKILL
 #define ARGUMENTS_MAX 64
 
 extern char **environ;

@@ -74,7 +74,7 @@ int64_t glintL_jobs_total(lua_State *L, int index)
 
 // The frames to render: of the selected frames, those at positions from .. to.
 typedef struct part {
-    int64_t from, to, position; // position: of the last frame passed
+    int64_t from, to, position; // positions of the part; position: the last frame passed
 } part;
 
 static part open_part(glintL_run *run, int64_t frames)
@@ -145,10 +145,10 @@ static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
 // numbers, and the frames are rendered in the order that costs least.
 typedef struct waiting {
     glintL_work **works; // owned; NULL: rendered, or not selected
-    int64_t frames, count; // of each job, of all
+    int64_t frames, count; // number of frames of each job, and of all jobs
     bool has_rendered; // some frame
     bool in_order; // frames no longer wait
-    long long most_bytes; // of the process, while frames wait
+    long long most_bytes; // memory limit of the process while frames wait
 } waiting;
 
 // Returns how many jobs from job i on are animations of the same scene with the same number of frames, and may wait together.

@@ -13,7 +13,7 @@
 
 // A placeholder for the number in a pattern, which begins with '%' or '#'.
 typedef struct placeholder {
-    size_t length; // in the pattern; 0: invalid
+    size_t length; // length in the pattern; 0: invalid
     int digits; // -1: an escaped '%' or '#'
 } placeholder;
 

@@ -91,7 +91,7 @@ void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_ren
         return;
     run->retained_scene = glint_scene_retain(scene);
     run->retained_render = *render;
-    run->retained_render.desc.derivatives = NULL; // they belong to the scene's next frame by now
+    run->retained_render.desc.derivatives = NULL; // the derivatives belong to the scene's next frame by now
     run->retained_render.desc.derivative_count = 0;
     run->retained_render.derivative_count = 0;
     run->retained_render.desc.light_passes = NULL; // the study measures the picture without them

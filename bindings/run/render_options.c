@@ -13,7 +13,7 @@
 
 typedef enum sort {
     WHOLE, // a whole number, stored as double, min .. max
-    REAL, // the same, also with fractions
+    REAL, // a number, also with fractions, min .. max
     CHOICE, // an enum
     COLORS, // a colour map and its range
     BITS,
@@ -25,7 +25,7 @@ typedef enum sort {
 
 typedef struct detail {
     sort sort;
-    size_t offset; // in glintL_render
+    size_t offset; // offset of the field in glintL_render
     double min, max;
     const char *const *names; // CHOICE
 } detail;

@@ -31,9 +31,9 @@
 
 #define GLINTL_PATH_SIZE 4096
 #define GLINTL_MESSAGE_SIZE 1024
-#define GLINTL_PASSES_MAX (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< of a frame; light passes follow them
+#define GLINTL_PASSES_MAX (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< passes of a frame; light passes follow them
 #define GLINTL_PASS_NAME_SIZE (GLINT_NAME_SIZE + 6) ///< bytes of "d:lamp_x", "light:key"
-#define GLINTL_FRAMES_MAX 100000000 ///< of one job
+#define GLINTL_FRAMES_MAX 100000000 ///< maximum number of frames of one job
 
 typedef enum glintL_exit {
     GLINTL_EXIT_DONE = 0,
@@ -59,8 +59,8 @@ bool glintL_selection_parse(glintL_selection *selection, const char *text, char 
 bool glintL_selection_parse_shard(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
 bool glintL_selection_add(glintL_selection *selection, glintL_range range);
 void glintL_selection_clear(glintL_selection *selection);
-bool glintL_selection_is_whole(const glintL_selection *selection); ///< it selects every frame
-/// Ignores shards.
+bool glintL_selection_is_whole(const glintL_selection *selection); ///< whether it selects all frames
+/// Returns whether a frame is selected; ignores shards.
 bool glintL_selection_has(const glintL_selection *selection, int64_t number);
 int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last);
 /// Returns the range *from .. *to of the selected frames of first .. last, counted from 1, that belong to this shard;
@@ -193,13 +193,13 @@ typedef struct glintL_record {
     double build_ms, encode_ms, write_ms;
     double pixel_count;
     glint_frame_stats stats;
-    int files_left; ///< still to be written
+    int files_left; ///< number of files still to be written
     bool failed;
-    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of its derivatives
+    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the frame's derivatives
     char **files; ///< by pass; owned; NULL: none
     int slots; ///< length of `files`: GLINTL_PASSES_MAX and the light passes
     char *light_passes; ///< owned; names separated by commas; NULL: none
-    struct glintL_film *film; ///< the film of its beauty; NULL: none
+    struct glintL_film *film; ///< the film that gets the beauty pass; NULL: none
     struct glintL_record *next;
 } glintL_record;
 
@@ -271,8 +271,8 @@ struct glintL_run {
     glintL_mode mode;
     int64_t explain_frame;
     glint_plan *explain_plan; ///< owned
-    struct glintL_order *explain_order; ///< owned; of the sweep that contains the frame; NULL: no sweep
-    bool keeps_scene; ///< of the explained frame; then these are set, too:
+    struct glintL_order *explain_order; ///< owned; order of the sweep that contains the frame; NULL: no sweep
+    bool keeps_scene; ///< keeps the scene of the explained frame and sets the next three fields
     glint_scene *retained_scene; ///< owned; the scene at that frame
     glintL_render retained_render;
     glint_plan *retained_neighbour; ///< owned; the previous frame, or the second for the first; NULL: none
@@ -301,7 +301,7 @@ struct glintL_run {
     uint64_t clipped, pixels, nonfinite; ///< totals of the reported frames
     bool finds_range; ///< the run also measures the pass that is scaled for viewing
     double range[2]; ///< range of that pass's values
-    glint_brightness brightness; ///< of pictures that are data; in a run that measures, of all with integer values
+    glint_brightness brightness; ///< of data pictures; in a measuring run, of all with integer values
     int64_t point, point_count; ///< number of the --sweep point, 1 .. point_count; 0 of 0: no sweep
     int64_t point_first; ///< frames numbered before this point
     int64_t earlier; ///< lists of jobs already run
@@ -319,7 +319,7 @@ struct glintL_run {
     char **said; ///< warnings given so far, each once; owned
     size_t said_count;
 
-    int exit_code; ///< of the first failure
+    int exit_code; ///< exit code of the first failure
     int64_t failed_index;
     char message[GLINTL_MESSAGE_SIZE];
     volatile sig_atomic_t interrupted; ///< number of the signal

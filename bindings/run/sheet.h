@@ -42,10 +42,10 @@ typedef struct glintL_axis {
 } glintL_axis;
 
 typedef struct glintL_axes {
-    glintL_axis axis[GLINTL_AXES_MAX]; ///< the first changes fastest
+    glintL_axis axis[GLINTL_AXES_MAX]; ///< the first axis changes fastest
     size_t count;
     bool is_grid; ///< the cells are all combinations, in order
-    glint_picture **pictures; ///< owned: for their sizes and texts
+    glint_picture **pictures; ///< owned; the files' pictures, for their sizes and texts
     size_t cell_count;
 } glintL_axes;
 

@@ -82,7 +82,7 @@ static int add_callers(lua_State *L)
         const char *line = lua_pushfstring(L, "%s:%d", where.short_src, where.currentline);
         const char *said = strstr(lua_tostring(L, -2), line);
         const char after = said ? said[strlen(line)] : ' ';
-        if (said && (after < '0' || after > '9')) { // the message has this line already
+        if (said && (after < '0' || after > '9')) { // skips a line that the message has already
             lua_pop(L, 1);
             continue;
         }

@@ -11,7 +11,7 @@ typedef struct glintL_walk {
     int list, job_index; // stack indices; the job is at job_index
     lua_Integer settled; // number of jobs in the list whose scene is in its final state
     const glintL_job *job;
-    glintL_render render; // including the options of the command line
+    glintL_render render; // render options, including the options of the command line
     double time; // time of the moment that is built
     char pattern[GLINTL_PATH_SIZE];
     glintL_naming naming;

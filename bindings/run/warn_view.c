@@ -11,7 +11,7 @@
 
 #include "bindings/run/run.h"
 
-#define MEMBERS_MAX 1000 // of a scene with its groups: in larger scenes single shapes are not checked
+#define MEMBERS_MAX 1000 // limit of shapes in a scene with its groups: in larger scenes single shapes are not checked
 #define LIGHTS_MAX 64
 #define BEND_MOST 11.0 // degrees between faces and normals of a smooth mesh: shadows cut off light at a cosine of 0.19
 #define UNSEEN_MAX 1000 // shapes with an entry in a run's list; others are not reported
@@ -36,7 +36,7 @@ typedef struct ball {
 typedef struct members {
     const glint_light *lights[LIGHTS_MAX];
     int light_count;
-    int shape_count; // including those in groups
+    int shape_count; // number of shapes, including shapes in groups
     bool shows_more; // mirrors, a lens and the like can show objects outside the view
 } members;
 
@@ -187,7 +187,7 @@ static void move_ball(const glint_transform *t, ball *b)
             squares[j] += t->m[i][j] * t->m[i][j];
     }
     for (int j = 0; j < 3; j++) {
-        double product = 0; // of two columns
+        double product = 0; // dot product of two columns
         for (int i = 0; i < 3; i++)
             product += t->m[i][j] * t->m[i][(j + 1) % 3];
         between = fmax(between, fabs(product));

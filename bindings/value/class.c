@@ -6,7 +6,7 @@
 
 static const char LISTED; // its address is the registry key for the table for glint._fields()
 
-typedef union description { // of any object
+typedef union description { // description of any object
     max_align_t align;
     char bytes[GLINTL_DESC_SIZE];
 } description;

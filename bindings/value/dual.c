@@ -7,7 +7,7 @@
 #include "bindings/value/glintL.h"
 
 static const char VARIABLES; // its address is the registry key for the list of the variables' names
-static const char SLOPED; // the same for the userdata that store slopes, as weak keys
+static const char SLOPED; // registry key for the userdata that store slopes, as weak keys
 
 // ---- Variables ----
 
@@ -302,7 +302,7 @@ bool glintL_read_duals(lua_State *L, int index, const char *path, bool is_color,
 
 // The slopes of one field of an object, in the engine's units.
 typedef struct slopes {
-    glintL_dual of[3]; // of each component
+    glintL_dual of[3]; // slopes of each component
 } slopes;
 
 static int count_of(const glintL_field *field)

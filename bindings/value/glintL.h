@@ -95,7 +95,7 @@ const char *glintL_push_name_after(lua_State *L, const char *text, const char *b
 
 /// Pushes a userdata "glint.vector": v[1..3], v.x/y/z, v.r/g/b, #v, unpack(), ==, tostring, + - * /; assigning raises.
 void glintL_push_vector(lua_State *L, const double v[3]);
-/// The same with a field `a`.
+/// Pushes such a userdata with a field `a`.
 void glintL_push_texel(lua_State *L, const double v[4]);
 #define GLINTL_VECTOR_TYPE "glint.vector"
 /// Returns NULL if the value at index is not a vector.
@@ -104,7 +104,7 @@ int glintL_unpack(lua_State *L); ///< the method `unpack`
 
 // ---- dual.c: numbers with their derivatives by variables ----
 
-#define GLINTL_VARIABLES_MAX 32 ///< in one script
+#define GLINTL_VARIABLES_MAX 32 ///< maximum number of variables in one script
 #define GLINTL_DUAL "glint.dual"
 
 typedef struct glintL_dual {
@@ -119,7 +119,7 @@ void glintL_push_variable(lua_State *L, const char *name, double value);
 /// Return the variable's number, from 0 (-1: none), and the nearest variable's name, or NULL.
 int glintL_find_variable(lua_State *L, const char *name);
 const char *glintL_near_variable(lua_State *L, const char *name);
-/// lua/variable.c: the same. When the first variable is made, extends `math` to dual numbers.
+/// lua/variable.c: pushes a variable. When the first variable is made, extends `math` to dual numbers.
 void glintL_make_variable(lua_State *L, const char *name, double value);
 /// Pushes the result of glint's elementary function of that name for the dual number at 1. Returns false and pushes
 /// nothing for other names.
@@ -137,9 +137,9 @@ glintL_dual glintL_dual_pow(const glintL_dual *a, const glintL_dual *b);
 bool glintL_read_duals(lua_State *L, int index, const char *path, bool is_color, int count, double *out);
 /// Stores the slopes of a value assigned to a field in the userdata at `index`, or removes the previous slopes.
 void glintL_keep_slopes(lua_State *L, int index, const glintL_field *field, int value);
-/// The same for one component.
+/// Stores or removes the slopes of one component of a field.
 void glintL_keep_part_slopes(lua_State *L, int index, const glintL_field *field, int part, int value);
-/// The same for all fields of the constructor's table at `table`.
+/// Stores the slopes of all fields in the constructor's table at `table`.
 void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_field *fields);
 /// Pushes a field's value if it has slopes; false: it has none.
 bool glintL_push_sloped(lua_State *L, int index, const glintL_field *field);
@@ -166,7 +166,7 @@ typedef struct glintL_tracing {
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
     void (*keep_closed)(lua_State *L, int index);
-    const luaL_Reg *methods; ///< of vectors; ended by a NULL name
+    const luaL_Reg *methods; ///< methods of vectors; ended by a NULL name
 } glintL_tracing;
 
 extern const glintL_tracing glintL_patterns; ///< bindings/pattern/patterns.c
@@ -195,7 +195,7 @@ const char *glintL_traced_position(lua_State *L, lua_CFunction reached);
 void glintL_refuse_within_trace(lua_State *L, const char *what);
 /// Stores the patterns in the constructor's table at `table` with the object whose userdata is at `index`.
 void glintL_keep_sources(lua_State *L, int index, int table, const glintL_field *fields);
-/// The same for one field, whose value is at `value`.
+/// Stores the pattern of one field, whose value is at `value`.
 void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value);
 /// Called before the script closes the userdata at `index`: its patterns stay with the object.
 void glintL_keep_closed(lua_State *L, int index);
@@ -234,7 +234,7 @@ typedef struct glintL_box {
 glintL_box *glintL_new_box(lua_State *L, const char *type);
 /// Returns the object; raises "<type> expected, got ..." or "<type> is closed".
 void *glintL_check_object(lua_State *L, int index, const char *type);
-/// The same without raising: NULL if the value is something else.
+/// Returns the object without raising; NULL if the value is something else.
 void *glintL_test_object(lua_State *L, int index, const char *type);
 /// Remember (weakly) the userdata on top of the stack for its object; push it again later, or nil if it is gone.
 void glintL_remember(lua_State *L, void *object);
@@ -311,19 +311,19 @@ typedef struct glintL_class {
 const glintL_class *glintL_class_of(lua_State *L, const char *type);
 /// Pushes the registry's table at `key`, an address; makes the table if necessary.
 void glintL_push_table(lua_State *L, const void *key);
-/// The same for a table with weak keys ("k") or values ("v").
+/// Pushes such a table with weak keys ("k") or values ("v").
 void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 
 // ---- class.c: fields and metatables of boxes ----
 
 /// Makes the metatable of a class.
 void glintL_open_class(lua_State *L, const glintL_class *type);
-/// The same, and adds the constructors of its variants to the table on top of the stack.
+/// Makes the metatable of a class, and adds the constructors of its variants to the table on top of the stack.
 void glintL_open_objects(lua_State *L, const glintL_class *type, const glintL_variant *variants, int count);
 /// Lists a kind of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
 /// `methods` may be NULL.
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
-/// The same for a variant of a class, including the methods of every object.
+/// Lists a variant of a class in glint._fields(), including the methods of every object.
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
 /// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, default } for each field,
 /// empty if the object has no table in the engine.
@@ -380,8 +380,8 @@ typedef struct glintL_render {
     glint_render_desc desc;
     char output[4096]; ///< "": not given
     glint_encode encode;
-    int colormap; ///< of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
-    double range[2]; ///< of the colormap: see glint_write_desc
+    int colormap; ///< colour map of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
+    double range[2]; ///< range of the colormap: see glint_write_desc
     double dpi; ///< pixels per inch; 0: not given
     uint32_t file_passes; ///< passes written to files in addition to beauty: bits 1u << GLINT_PASS_...
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the passes d:NAME to write

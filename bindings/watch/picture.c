@@ -54,8 +54,8 @@ static void span(int i, int places, int pixels, int *from, int *to)
 typedef struct shrinking {
     const glint_picture *from;
     watch_small *to;
-    double light[256], *sums; // light: of each pixel value; sums: of a row
-    unsigned char *row; // of the full picture
+    double light[256], *sums; // light: linear light of each pixel value; sums: sums of a row
+    unsigned char *row; // row of the full picture
 } shrinking;
 
 // Computes row y of the reduced picture by averaging.

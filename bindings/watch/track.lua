@@ -11,7 +11,7 @@ local function noted(read)
   end
 end
 
--- The same for functions that raise errors themselves: the error gets the position of the script's line.
+-- Wraps functions that raise errors themselves: the error gets the position of the script's line.
 local function placed(read)
   read = noted(read)
   return function(...)

@@ -31,7 +31,7 @@ typedef struct watcher {
     watch_files *files;
     watch_server *server; // NULL: no page
     watch_terminal terminal;
-    glint_renderer *renderers[2]; // by quality; the run owns the one in use
+    glint_renderer *renderers[2]; // renderers by quality; the run owns the renderer in use
     glintL_set *given; // from the command line
     size_t given_count;
     quality now;
@@ -40,13 +40,13 @@ typedef struct watcher {
     bool differs; // the full picture differs from its preview
     double since_ms; // time of the current request; 0: the start
     int64_t pictures, frame, frames; // pictures: shown so far
-    int64_t calls; // of scene:render in the script; the frames of its jobs have higher numbers
+    int64_t calls; // number of calls of scene:render in the script; the frames of its jobs have higher numbers
     int width, height;
     double ms;
     bool is_preview;
     char *params; // JSON from the last good run; owned
     char error[GLINTL_MESSAGE_SIZE]; // "": the last run was good
-    char warnings[GLINTL_MESSAGE_SIZE]; // of the last run, one per line
+    char warnings[GLINTL_MESSAGE_SIZE]; // warnings of the last run, one per line
 } watcher;
 
 // ---- Messages ----
@@ -228,7 +228,7 @@ static void select_frame(watcher *w, int64_t frame)
         glintL_run_fail(w->run, GLINTL_EXIT_FAILED, 0, "out of memory");
 }
 
-// Gives the renderer of this quality to the run, and takes the other back.
+// Gives the renderer of this quality to the run, and takes the run's previous renderer back.
 static void take_renderer(watcher *w, quality now)
 {
     glintL_run *run = w->run;

@@ -104,9 +104,9 @@ typedef struct watch_requests {
     glintL_wake wake;
     bool script, frame; ///< run the script again; show another frame
     char changed[GLINTL_PATH_SIZE]; ///< a changed file; "": none
-    double since_ms; ///< of the first pending request
+    double since_ms; ///< time of the first pending request
     int64_t wanted; ///< frame to show
-    char *names; ///< of the script's parameters, each between two line breaks; owned. NULL: unknown
+    char *names; ///< names of the script's parameters, each between two line breaks; owned. NULL: unknown
     glintL_set *overrides; ///< owned with their texts; only for these names
     size_t override_count;
     atomic_bool supersedes; ///< the running script's result is no longer needed

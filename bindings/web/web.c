@@ -26,15 +26,15 @@ typedef struct web_job {
     glintL_set sets[SETS_MAX]; // their strings are owned
     double seconds, until_ms; // time limit of the script in one call; the deadline
     double render_ms; // start of the current render
-    int64_t calls; // of scene:render in the script; the frames of its jobs have higher numbers
+    int64_t calls; // number of calls of scene:render in the script; the frames of its jobs have higher numbers
     int64_t frames;
-    double width, height; // of the first frame
-    double fps; // of the first animation; 24 for calls of scene:render
+    double width, height; // size of the first frame
+    double fps; // frame rate of the first animation; 24 for calls of scene:render
     char *params, *plan; // JSON; owned
     glint_image *image; // of the last frame
     glintL_render render;
     uint8_t *bytes; // result of the last request; owned
-    char warnings[WARNINGS_SIZE]; // of the last call, one per line
+    char warnings[WARNINGS_SIZE]; // warnings of the last call, one per line
 } web_job;
 
 static web_job job;

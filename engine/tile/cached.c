@@ -287,7 +287,7 @@ void glint_tile_cache_box(glint_tile *tile, const glint_tile_frame *frame, const
     if (!cached || tile->boxed != tile->sample || glint_key_equal(cached->boxed, surface))
         return;
     if (tile->sample == 0) {
-        cached->boxed = (glint_key) { 0 }; // until it contains all samples; some samples may not compute their points
+        cached->boxed = (glint_key) { 0 }; // until all samples are in; some may not compute points
         cached->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
     }
     for (int c = 0; c < 3 && box; c++) {

@@ -45,7 +45,7 @@ typedef struct glint_tile_counts {
     uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
     glint_odd_patterns odd;
-    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls, and results reused from an earlier frame
+    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls; results reused from earlier frames
 } glint_tile_counts;
 
 /// Adds every counter of `more`.
@@ -162,7 +162,7 @@ typedef struct glint_tile {
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
     bool transparent; ///< the background adds no light: for the eye's own rays in a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS]; ///< lanes whose rays are followed
-    glint_camera_args camera; ///< of the current sample
+    glint_camera_args camera; ///< camera of the current sample
     glint_lens lens; ///< target of camera.lens
     glint_cast_view view; ///< view of the frame's cameras
     uint32_t sample; ///< number of the current sample
@@ -387,7 +387,7 @@ void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, cons
 /// Returns whether ray i sees a light.
 static inline bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
 {
-    const uint16_t *seen = tile->own[GLINT_STAGE_VISIBLE_LIGHT]; // it begins with the lanes whose ray sees one
+    const uint16_t *seen = tile->own[GLINT_STAGE_VISIBLE_LIGHT]; // starts with lanes that see a light
     return seen && seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
 }
 /// Fills in the active lanes that see no light.

@@ -10,7 +10,7 @@
 --   gr.mesh(name, "model.obj")
 --   gr.cylinder(name)                                   radius 1 around gr.options.axis, from 0 to 1 along it, closed
 --   gr.cone(name)                                       base of radius 1 at 0, apex at 1 of that axis, closed
---   gr.plane(name)                                      the square that gr.options.plane says; lit on both sides
+--   gr.plane(name)                                      the square that gr.options.plane selects; lit on both sides
 --   gr.plane(name, {corner}, {u}, {v}, width, height)   gr.plane(name, {middle}, {u}, {v}, edge)
 --   gr.torus(name, tube, ring)                          around the z axis; radii; the ring's is 1 when left out
 --   gr.nh_torus(name, {centre}, ring, tube)             the same

@@ -350,7 +350,7 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_bounce *bounce = tile->own[GLINT_STAGE_BOUNCE];
     glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
-    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // its paths begin in the order of samples
+    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // its paths start in sample order
     memset(bounce->counts, 0, sizeof bounce->counts);
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;

@@ -17,7 +17,7 @@ typedef struct glint_derivative_work {
     _Alignas(64) double light[3][GLINT_TILE_SAMPLES]; ///< light of hits in double, if ray weights have slopes or light
         ///< fades
     _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< used if the tile's are float
+    _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< if the tile's are float
     _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< direction and weight of the current light
     _Alignas(64) double bend[3][3][GLINT_GROUP]; ///< slopes of a group's points, normals and eyes
     glint_bend_camera camera[GLINT_DERIVATIVES_MAX]; ///< cameras of the eye, one per derivative

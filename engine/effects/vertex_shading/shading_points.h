@@ -20,7 +20,7 @@ typedef struct glint_shading_points_cached {
     glint_key key; ///< key of the contents; all zero: empty
     uint32_t blocks; ///< blocks of one side; the blocks of backs follow those of fronts
     uint32_t ready; ///< blocks computed before this frame
-    glint_shading_point_light *light; ///< fronts, then backs; then the same for each group of light passes
+    glint_shading_point_light *light; ///< light of fronts, then backs; then both for each light group
     size_t group_count; ///< of light passes
     double *slopes; ///< for each point its light (three numbers) and three slopes for each derivative; NULL: no
         ///< derivatives

@@ -13,7 +13,7 @@ local elements, boxes = require "glint.elements", require "glint.box"
 local bonds = {}
 
 local CLOSEST = 0.4 -- angstroms: closer atoms are one atom in alternate positions
-local NEVER = 0 / 0 -- a reach that no distance is below
+local NEVER = 0 / 0 -- a reach below which no distance is: comparisons are false
 local SIDE = 1 << 20 -- cells along each axis, at most
 local IMAGES = 8 -- limit of the longest bond, in sides of the periodic box
 
@@ -46,11 +46,11 @@ local function reach_of(name, set)
 end
 
 --- Calls found(i, j) once for every bond, with the numbers of two atoms, i > j.
----@param x number[]  places
+---@param x number[]  x coordinates of the atoms; y and z likewise
 ---@param y number[]
 ---@param z number[]
----@param reach number[]  of each atom; a bond is at most as long as the sum of two
----@param closest number  and longer than that
+---@param reach number[]  reach of each atom; a bond is at most as long as the sum of its atoms' reaches
+---@param closest number  a bond is longer than this
 ---@param found function
 function bonds.each(x, y, z, reach, closest, found)
   local low, width = { math.huge, math.huge, math.huge }, 0
@@ -121,7 +121,7 @@ end
 --- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two instead of covalent
 --- radii; box, see glint.box: across whose periodic faces bonds are made (default: the box of the frames, if any)
 ---@return table? group
----@return integer count  of bonds
+---@return integer count  number of bonds
 function bonds.new(set, options)
   options = settings(options)
   local box = box_of(set, options)

@@ -155,8 +155,8 @@ end
 --- Finds the periodic images of points in the box that lie within `reach` of it: calls found(i, x, y, z) with the
 --- number of a point and the position of its image. Uses only one of two opposite steps p, q, r and -p, -q, -r.
 ---@param b table
----@param n integer  how many points; the lists may be longer, and grow meanwhile
----@param x number[]  places, brought back into the box
+---@param n integer  number of points; the lists may be longer, and may grow during the call
+---@param x number[]  x coordinates of the points, wrapped into the box; y and z likewise
 ---@param y number[]
 ---@param z number[]
 ---@param reach number  world units

@@ -53,7 +53,7 @@ local function text_rows(source, layout)
   end
 end
 
--- The same for binary data.
+-- Returns such a function for binary data.
 local function binary_rows(source, layout)
   if source.path == "-" then error("standard input: a cloud of points as text expected, got a binary one", 0) end
   local file = assert(io.open(source.path, "rb"))
@@ -107,7 +107,7 @@ local function unpack_lzf(packed, size)
   return table.concat(parts)
 end
 
--- The same for LZF data, which contain the first field of all points, then the second field of all points, and so on.
+-- Returns one for LZF data: the first field of all points, then the second field of all points, and so on.
 local function packed_rows(source, layout)
   local function fail(what) error(("%s: %s"):format(source.path, what), 0) end
   if source.path == "-" then fail "a cloud of points as text expected, got a binary one" end

@@ -131,7 +131,7 @@ film.__index = film
 
 --- Returns the frames of a file in any order. film:frame(n) ends the reading of the previous frame.
 ---@param path string
----@param start function  as of frames.each
+---@param start function  as in frames.each
 function frames.film(path, start)
   local source = lines.open(path)
   return setmetatable({ path = path, source = source, start = start, places = { { 0, 0 } } }, film)

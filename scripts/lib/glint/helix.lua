@@ -31,8 +31,8 @@ local function beta_carbon(n, ca, c)
 end
 
 --- Calls f(atom, x, y, z, residue, chain) for each heavy atom: N, CA, C, O, CB of each residue, chain by chain.
----@param count integer  helices, in a square as far as they go
----@param residues integer  of each helix
+---@param count integer  number of helices, arranged in a square
+---@param residues integer  number of residues in each helix
 ---@param f function
 function helix.each(count, residues, f)
   local columns = math.ceil(math.sqrt(count))
@@ -52,7 +52,7 @@ end
 
 --- Writes the same atoms as a PDB file. Raises when that fails.
 ---@param path string
----@param count integer  1 .. 26, for a chain has a letter
+---@param count integer  1 .. 26, because each chain is named by a letter
 ---@param residues integer  1 .. 9999
 function helix.write_pdb(path, count, residues)
   local file = assert(io.open(path, "w"))

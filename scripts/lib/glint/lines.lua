@@ -1,4 +1,4 @@
--- The lines of a text file one at a time, with errors that name the place: all readers of scripts/lib/glint use it.
+-- The lines of a text file one at a time, with errors that name the line: all readers of scripts/lib/glint use it.
 --     local source = require "glint.lines".open(path)
 --     for line in function() return source:next() end do ... end
 -- An error reads FILE:LINE: WHAT expected, got WHAT. Memory: the current line and 64 KiB.

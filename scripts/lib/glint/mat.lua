@@ -12,9 +12,9 @@ end
 
 --- Writes one array of doubles.
 ---@param path string
----@param name string  of the variable
----@param size table  of each dimension: { rows, columns, layers }
----@param value function  of a place, from 1: value(row, column, layer)
+---@param name string  name of the variable
+---@param size table  size of each dimension: { rows, columns, layers }
+---@param value function  returns the number at a position, from 1: value(row, column, layer)
 function mat.write(path, name, size, value)
   local numbers = {}
   for layer = 1, size[3] or 1 do

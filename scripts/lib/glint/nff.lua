@@ -13,7 +13,7 @@ local particles = require "glint.particles"
 
 local nff = {}
 
-local SIDES = 128 -- of a truncated cone
+local SIDES = 128 -- sides of a truncated cone
 
 local VIEW = { { "from", 3 }, { "at", 3 }, { "up", 3 }, { "angle", 1 }, { "hither", 1 }, { "resolution", 2 } }
 
@@ -216,7 +216,7 @@ end
 
 --- Reads a file into a scene. Errors have file and line. Memory: see glint.particles.
 ---@param path string
----@param options? { mirrors: boolean, format: string }  mirrors: also what f tells of them, default true; format: of
+---@param options? { mirrors: boolean, format: string }  mirrors: reads mirrors and glass, default true; format: of
 --- the spheres, "f64" (default) or "f32"
 ---@return table picture  scene, width, height, material_count, polygon_count, cones (a list of shapes), set (of
 --- glint.particles, with its count)

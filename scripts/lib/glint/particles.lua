@@ -237,8 +237,8 @@ end
 
 --- Adds one sphere.
 ---@param label string
----@param radius? number  Default: the kind's
----@param value? number  what color_by is to show
+---@param radius? number  Default: the radius of the kind
+---@param value? number  the value that color_by shows
 function set:add(label, x, y, z, radius, value)
   local done, expected, got = put(self, nil, label, x, y, z, radius, value)
   if not done then error(("%s expected, got %q"):format(expected, got), 2) end
@@ -276,7 +276,7 @@ end
 
 --- Adds the atoms of a frame from a reader; points of a coloured cloud keep their colours. An atom that cannot be added
 --- is an error with file and line. The set stores the frame's box for glint.bonds.
----@return table set  the same
+---@return table set  the set itself
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end
   if frame.color and not self.color_by then return add_colored(self, frame) end

@@ -39,7 +39,7 @@ function picture:set(x, y, color)
   row[x] = string.char(encode(color.x or color[1]), encode(color.y or color[2]), encode(color.z or color[3]))
 end
 
-local remainders = {} -- of CRC-32, by byte
+local remainders = {} -- remainders of CRC-32, by byte
 for byte = 0, 255 do
   local r = byte
   for _ = 1, 8 do r = r & 1 == 1 and 0xedb88320 ~ r >> 1 or r >> 1 end

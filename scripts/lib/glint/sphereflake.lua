@@ -6,7 +6,7 @@
 -- roots, so that the spheres are the same on every machine.
 local sphereflake = {}
 
-local SHARE = 1 / 3 -- of the parent's radius
+local SHARE = 1 / 3 -- radius relative to the parent's
 local HALF = math.sqrt(2) / 2
 
 -- Turns v about a unit axis by the angle with this cosine and sine (Rodrigues).

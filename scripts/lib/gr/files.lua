@@ -11,7 +11,7 @@ local open, concat, insert, remove = io.open, table.concat, table.insert, table.
 local dofile, loadfile, raise = dofile, loadfile, check.raise
 
 local running = {} -- paths of the scene and of files that it runs by dofile, innermost last
-local folders = {} -- their folders: "" or ending in a slash
+local folders = {} -- folders of these paths: "" or ending in a slash
 
 local function folder_of(path) return path:match "^(.*/)" or "" end
 
@@ -42,7 +42,7 @@ local function can_read(path)
   return readable
 end
 
---- Returns the file's path, or nil and the places searched. here_first: the working directory first.
+--- Returns the file's path, or nil and the places searched. here_first: searches the working directory first.
 function files.find(path, here_first)
   local places = {}
   if here_first or path:sub(1, 1) == "/" then insert(places, path) end

@@ -45,7 +45,7 @@ local function polygon(corner, a, b, samples)
   return { vertices = corners, two_sided = true, samples = clamp_samples(samples) }
 end
 
--- The same around a middle.
+-- Returns the fields of a parallelogram around a middle.
 local function around(middle, a, b, samples)
   local corner = {}
   for k = 1, 3 do corner[k] = middle[k] - (a[k] + b[k]) / 2 end
@@ -97,7 +97,7 @@ function lamp.area(call, place, second, third, fourth, ...)
   return ball(call, place, second, third, fourth, ...)
 end
 
---- The same for gr.rect_light.
+--- Turns the arguments of gr.rect_light into such a name and fields.
 function lamp.rectangle(call, middle, width, depth, colour, falloff, samples, ...)
   middle = check.vector(call, "middle", middle, 3)
   width, depth = check.above(call, "width", width, 0), check.above(call, "depth", depth, 0)

@@ -125,7 +125,7 @@ local function install_numbers()
   -- luacheck: pop
 end
 
---- Adds all of it to the globals and the libraries.
+--- Adds these functions to the globals and the libraries.
 return function()
   for library, names in next, ALIASES do
     for name, value in pairs(names) do

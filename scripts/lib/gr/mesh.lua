@@ -10,7 +10,7 @@ local ipairs, pcall, rawget, rawlen, setmetatable, tonumber, type =
   ipairs, pcall, rawget, rawlen, setmetatable, tonumber, type
 local floor = math.floor
 local loaded = {} -- models by their names in the scene
-local uv_of = setmetatable({}, { __mode = "k" }) -- of faces: the texture coordinates of their corners
+local uv_of = setmetatable({}, { __mode = "k" }) -- texture coordinates of each face's corners
 
 -- Returns twice the area vector of a polygon; corners are indices in the flat list of coordinates.
 local function area(numbers, corners)

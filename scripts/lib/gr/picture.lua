@@ -252,7 +252,7 @@ end
 local function members_of(root, order, count, lights)
   local members, seen = {}, {}
   walk(root, order, count, function(node, map)
-    if node.kind == "combined" then -- made again for each picture
+    if node.kind == "combined" then -- combined solids are made again for each picture
       members[#members + 1] = combine(node, order, count, map)
       return
     end

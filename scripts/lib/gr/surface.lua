@@ -68,7 +68,7 @@ local function is_index(x) return x > 1 and x <= INDEX_MAX end
 -- Makes glass from only its index, which determines its reflectance.
 local function make_glass(record, index) record.transmission, record.ior, record.fresnel = 1, index, true end
 
--- One number: a reflectivity or an index. In some scenes every opaque material has a plain 1.
+-- One number: a reflectivity or an index of refraction. In some scenes every opaque material has a 1.
 local readers = {
   function(record, a)
     local kd = record.kd
@@ -104,7 +104,7 @@ local readers = {
 }
 
 local function read_numbers(record, call, numbers)
-  while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- trailing zeros add nothing
+  while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- trailing zeros have no effect
   if #numbers == 0 then return end
   local has_gloss = #numbers == 4 and is_share(numbers[2]) and is_share(numbers[3]) and is_index(numbers[4])
   local count = has_gloss and 4 or min(#numbers, 3)
@@ -152,7 +152,7 @@ function surface.record(call, kd, ks, shininess, ...)
   return record
 end
 
---- The same with a picture instead of kd.
+--- Makes a record with a picture instead of kd.
 function surface.pictured(call, file, ks, shininess, ...)
   local record = surface.record(call, { 1, 1, 1 }, ks, shininess, ...)
   record.picture = surface.picture(call, file)
@@ -170,7 +170,7 @@ function surface.glass(record, call, index)
   make_glass(record, index)
 end
 
---- Sets the opacity: the share of the light behind that the surface hides, and of its own light; index: of refraction.
+--- Sets the opacity, the share of the light from behind that the surface hides; index: index of refraction.
 function surface.hide(record, call, share, index)
   record.opacity = check.at_least(call, "opacity", share, 0)
   if record.opacity > 1 then check.refuse(call, "opacity", "number 0 .. 1", share) end
@@ -230,7 +230,7 @@ local function make(record, picture, grain, bump)
   return glint.material(fields)
 end
 
--- Returns by how much a map lengthens vectors, on average.
+-- Returns the mean factor by which a map lengthens vectors.
 local function scale_of(map)
   local m, n = {}, 0
   for number in tostring(map):gmatch "[-+%w.]+" do
