@@ -72,13 +72,13 @@ typedef struct cli_options {
     const char *live_script; ///< script of --live; NULL: the script itself
     int64_t columns, difference; ///< for sheet; 0: not given
     double gain, label_size; ///< for sheet; 0: not given
-    bool transparent; ///< of sheet
+    bool transparent; ///< the background of sheet is transparent
     int64_t frame; ///< number of the frame that explain describes
     double fail, warn; ///< limits for compare
     cli_sweep *sweeps;
     size_t sweep_count;
     glintL_request request; ///< the run takes it over
-    bool quick; ///< of cost
+    bool quick; ///< cost runs each setting fewer times
     bool programs; ///< explain lists the instructions of programs
     double budget_s; ///< time budget of cost; 0: none
     const char *report, *knobs; ///< for cost; NULL: no report, all knobs

@@ -16,7 +16,7 @@ typedef struct point {
     cli_script script;
     glintL_jobs_state jobs;
     char *params_text; // owned; exchanged with the run's text while the point is current
-    bool has_frames; // it has rendered frames
+    bool has_frames; // the point has rendered frames
 } point;
 
 typedef struct points {
@@ -32,7 +32,7 @@ typedef struct points {
     bool together, in_order; // some job's runs advance together; some frames go to a pipe
     int64_t job, frame; // position of the current job and frame in their lists, 1 ..
     glint_plan *plan; // plan of the current frame
-    glintL_order order; // of the current job
+    glintL_order order; // order of the current job
     int64_t *list; // owned; numbers of the frames to render, in order
     int64_t count;
 } points;

@@ -312,7 +312,7 @@ double cost_left_ms(const cost_study *study); ///< time left in the budget; infi
 bool cost_time_cases(cost_study *study);
 void cost_summarize(cost_study *study); ///< computes the quartiles of the measured times
 double cost_time_ms(const cost_case *c); ///< the median of COST_CPU, by which rows are compared
-double cost_quartile_range(const cost_case *c); ///< of COST_CPU
+double cost_quartile_range(const cost_case *c); ///< the quartile range of COST_CPU
 /// Returns whether a case's quartile range overlaps neither neighbour's in the order of times.
 bool cost_is_apart(const cost_study *study, int index);
 double cost_round_ms(const cost_study *study); ///< time to run every case that is not left out once, as far as known

@@ -34,7 +34,7 @@ typedef struct publication {
         char *path, *name; // path of a file that the script reads, and its name in the page; owned
     } files[FILES_MAX];
     size_t file_count;
-    glint_image *image; // of the frame
+    glint_image *image; // picture of the frame
     glintL_render render;
     int64_t frame;
     uint8_t *poster, *wasm, *engine; // owned

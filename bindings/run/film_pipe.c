@@ -36,7 +36,7 @@ bool glintL_has_ffmpeg(void)
 typedef struct encoder {
     const glintL_run *run;
     const glintL_film *film;
-    int width, height; // of a frame
+    int width, height; // size of a frame, pixels
     int sent_width, sent_height; // rounded up to even where the format requires it
     pid_t process;
     int socket; // our end of ffmpeg's input; -1: closed

@@ -146,7 +146,7 @@ static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
 typedef struct waiting {
     glintL_work **works; // owned; NULL: rendered, or not selected
     int64_t frames, count; // number of frames of each job, and of all jobs
-    bool has_rendered; // some frame
+    bool has_rendered; // some frame has been rendered
     bool in_order; // frames no longer wait
     long long most_bytes; // memory limit of the process while frames wait
 } waiting;

@@ -166,7 +166,7 @@ typedef struct glintL_request {
     size_t set_count;
     size_t swept_count; ///< how many of the last sets come from --sweep
     bool apng; ///< an output in .png is a film
-    double fps; ///< of films; 0: from the script
+    double fps; ///< frame rate of films; 0: from the script
     int threads; ///< 0: one per processor
     int repeat; ///< >= 1
     bool force, no_reuse;
@@ -283,7 +283,7 @@ struct glintL_run {
     glintL_reporter reporter;
 
     glint_renderer *renderer;
-    int renderer_threads; ///< as requested
+    int renderer_threads; ///< number of threads, as requested
     glint_writer *writer;
     glintL_record *head, *tail; ///< in the order of frames
     int64_t files_pending;
@@ -365,7 +365,7 @@ int glintL_message_handler(lua_State *L);
 /// Gives a warning. Skips it if it was given before (also for another frame, "frame 7: ...") or after a hundred
 /// warnings. Under --warnings=error the run fails with it.
 void glintL_run_warn(glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/// The same with the position of the calling Lua code: "<position>: <message>".
+/// Gives a warning with the position of the calling Lua code: "<position>: <message>".
 void glintL_warn(lua_State *L, const char *message);
 /// Warns that a camera's shutter is open, but there is no frame function to evaluate at several times.
 void glintL_warn_of_shutter(glintL_run *run);
@@ -374,7 +374,7 @@ bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radi
 /// own_camera.c: gives a scene without a camera one that has its shapes in view, with a warning. The scene's userdata
 /// is at `index`. Other values and empty scenes are left unchanged.
 void glintL_give_camera(lua_State *L, glintL_run *run, int index);
-void glintL_give_cameras(lua_State *L, int list, glintL_run *run); ///< the same for all jobs at `list` (absolute)
+void glintL_give_cameras(lua_State *L, int list, glintL_run *run); ///< gives cameras to all jobs at `list` (absolute)
 /// Prints a note about the state that a later run continues from. It is no mistake, so it is no failure under
 /// --warnings=error.
 void glintL_run_note(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -433,8 +433,8 @@ void glintL_warn_of_clipping(glintL_run *run);
 
 /// Notes the files of a frame, and warns if one of them had another picture in this run. False: the run has failed.
 bool glintL_places_add(glintL_run *run, const glintL_work *work);
-/// The same for a file that the script saves, or for a sheet. number: of the last frame before it; after another frame,
-/// the file counts as another picture.
+/// Notes a file that the script saves, or a sheet. number: the last frame before the file; after another frame, the
+/// file counts as another picture.
 bool glintL_written_note(glintL_run *run, const char *what, const char *path, int64_t number);
 void glintL_places_forget(glintL_run *run);
 
@@ -557,7 +557,8 @@ bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
 
 /// Decides the name of the first call at the end of the script. False: the run has failed.
 bool glintL_call_settle(glintL_run *run);
-/// Raises an error if the frames of --sweep must be returned: after a point whose script returned some, or failed.
+/// Raises an error if the script must return its frames under --sweep: after a point whose script returned frames or
+/// failed.
 void glintL_check_may_render(lua_State *L, const glintL_run *run);
 /// Raises the error that ends a script which has provided what was requested (its parameters, one frame's plan).
 int glintL_stop_script(lua_State *L);

@@ -256,7 +256,7 @@ typedef struct glintL_variant {
     const char *name; ///< "point_light": the path in messages
     glint_object_kind kind; ///< selects the table of its fields; GLINT_OBJECT_NONE: `fields`
     const glintL_field *fields; ///< ends with a NULL name
-    bool is_list; ///< its constructor's table may also contain a list
+    bool is_list; ///< the constructor's table may also contain a list
     const char *place; ///< the vector field whose components are `x`, `y` and `z`; NULL: none
     const luaL_Reg *getters; ///< read-only fields: functions of the object; NULL: none
     const luaL_Reg *methods; ///< in addition to the class's; NULL: none

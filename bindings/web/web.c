@@ -31,7 +31,7 @@ typedef struct web_job {
     double width, height; // size of the first frame
     double fps; // frame rate of the first animation; 24 for calls of scene:render
     char *params, *plan; // JSON; owned
-    glint_image *image; // of the last frame
+    glint_image *image; // picture of the last frame
     glintL_render render;
     uint8_t *bytes; // result of the last request; owned
     char warnings[WARNINGS_SIZE]; // warnings of the last call, one per line

@@ -345,7 +345,7 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
     glint_film_stamp now = stamp_of(tile, frame);
     if (plan->is_base && was->base != frame->refine->tiles[tile->index].pixels)
         return false;
-    if (plan->is_base) // `is_base` is part of the pixels' stamp, not of their key
+    if (plan->is_base) // `base` belongs to the stamp of the pixels, not to this frame's key
         now.base = was->base;
     if (!is_known(now.key) || !are_like(&now, was))
         return false;

@@ -191,7 +191,7 @@ typedef struct glint_tile {
     glint_tile_counts counts;
     void *shadow_scratch; ///< scratch memory of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
-    struct glint_group_sums *group_sums; ///< of effects/light_groups/; NULL in frames without light passes; for a batch
+    struct glint_group_sums *group_sums; ///< sums of light groups; NULL in frames without light passes; for a batch
         ///< those of its tile
     double *unbumped[3]; ///< real: normals before bumps; NULL: no bumps
     uint32_t own_planes; ///< index of the current sample's planes among those of samples shaded together

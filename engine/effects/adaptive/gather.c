@@ -21,7 +21,7 @@ struct glint_gathered {
                                    [GLINT_TILE_SAMPLES]; ///< diffuse and specular light of faces and vertices, for each
         ///< sample
     bool has_point_light;
-    uint16_t active[GLINT_TILE_GROUPS]; ///< these and the following: saved from the tile
+    uint16_t active[GLINT_TILE_GROUPS]; ///< `active` and the next members: saved from the tile
     uint32_t group_count, groups_across;
 };
 

@@ -41,12 +41,12 @@ typedef struct glint_refine_tile {
 typedef struct glint_refine {
     const glint_stages *stages;
     const glint_image *base;
-    bool coded; ///< its pixel values are compared; otherwise estimates
+    bool coded; ///< the base's pixel values are compared; otherwise estimates
     bool whole; ///< tiles without a chosen pixel are copied from the base unchanged
     bool in_place; ///< the base is rendered into the picture that is made from it
-    bool in_codes; ///< likewise, and the picture has only pixel values: the base's light is only kept for tiles with
+    bool in_codes; ///< like in_place, for a picture of only pixel values: the base's light is stored for tiles with
                    ///< clipped or non-finite pixels
-    glint_tone_desc tone; ///< of the pixel values
+    glint_tone_desc tone; ///< tone of the pixel values
     uint32_t least; ///< sum of differences of pixel values up to which pixels are equal
     float low, high, gain; ///< see glint_differ_args, glint_estimate_args
     glint_refine_tile *tiles; ///< the tiles of the whole picture, left to right, top to bottom

@@ -11,7 +11,7 @@ typedef struct glint_scene_slopes {
     glint_shape_desc *shapes; ///< slopes of the shapes, one for each part of the geometry
     glint_camera_desc camera;
     glint_scene_desc scene;
-    glint_derivative_programs *programs; ///< as in glint_plan_derivative
+    glint_derivative_programs *programs; ///< derivatives of programs, as in glint_plan_derivative
 } glint_scene_slopes;
 
 /// effects/derivative/fields.c: adds one slope to the description of its object; fails if the field has no derivative.

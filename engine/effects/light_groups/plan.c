@@ -162,7 +162,8 @@ static void join_names(groups *g)
         used += (size_t)sprintf(g->list + used, "%s%s", i ? "," : "", g->name[i]);
 }
 
-/// Splits Ia, the sum of the ambient light of the scene and of all lights; see glint_plan_shading.
+/// Adds a light's share of Ia to its group. Ia is the ambient light of the scene and of all lights; see
+/// glint_plan_shading.
 static void share_ambient(groups *g, const glint_plan *plan, const glint_light_desc *desc, uint32_t group)
 {
     for (int c = 0; c < 3 && group != GLINT_NO_GROUP; c++)

@@ -47,7 +47,7 @@ static bool is_break(const point *p, const point *q)
     return fmax(up, down) > GLINT_OUTLINE_VALLEY * length || fmin(up, down) < -GLINT_OUTLINE_RIDGE * length;
 }
 
-/// Returns whether there is an edge between two pixels whose line is drawn on the pixel of p. p must be a hit.
+/// Returns whether the pixel p, a hit, gets a line because of an edge between p and the pixel at x, y.
 static bool draws(const outliner *o, const point *p, int x, int y)
 {
     const glint_extent *e = &o->extent;

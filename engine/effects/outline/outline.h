@@ -17,7 +17,7 @@
 #include "engine/plan/plan.h"
 
 #define GLINT_OUTLINE_VALLEY 0.25 ///< sine of half of 29 degrees
-#define GLINT_OUTLINE_RIDGE 0.45 ///< of half of 53 degrees
+#define GLINT_OUTLINE_RIDGE 0.45 ///< sine of half of 53 degrees
 #define GLINT_OUTLINE_SMOOTH 0.95 ///< cosine of 18 degrees
 #define GLINT_OUTLINE_STEP 0.7 ///< sine of 44 degrees
 

@@ -16,10 +16,10 @@ typedef enum glint_field {
     GLINT_FIELD_TRANSMISSION,
     GLINT_FIELD_SHININESS,
     GLINT_FIELD_ROUGHNESS,
-    GLINT_FIELD_CLEAR, ///< of a translucent material: 1 - opacity
+    GLINT_FIELD_CLEAR, ///< 1 - opacity of a translucent material
     GLINT_FIELD_PLANES, ///< number of fields with planes
     GLINT_FIELD_BUMP = GLINT_FIELD_PLANES,
-    GLINT_FIELD_OPACITY, ///< of a material that cuts
+    GLINT_FIELD_OPACITY, ///< opacity of a material that cuts holes
     GLINT_FIELD_SHADER,
     GLINT_FIELD_COUNT,
     GLINT_FIELD_BACKGROUND = GLINT_FIELD_COUNT ///< belongs to the scene, not to a material
@@ -45,7 +45,7 @@ typedef struct glint_plan_pattern {
     uint32_t made; ///< fields computed by programs, and the fields derived from them, one bit each
     uint32_t reads; ///< inputs of the programs that run at surfaces, one bit each
     bool any; ///< it has programs
-    bool cut; ///< its surfaces may have holes
+    bool cut; ///< the material's surfaces may have holes
     bool repaints; ///< some derivative of the frame depends on numbers of its programs
     bool ambient_follows; ///< ambient equals diffuse
     glint_key numbers; ///< hash of the fields that are read in addition to the programs

@@ -53,7 +53,7 @@ static struct glint_vertex *own_of(const glint_tile *tile) { return tile->own[GL
 typedef struct shading_point {
     double point[3], normal[3]; ///< the normal of the front side
     double slack; ///< as in the stage surface, in units of a rounding
-    uint32_t prim; ///< its index among the arranged primitives
+    uint32_t prim; ///< index of the triangle among the arranged primitives
 } shading_point;
 
 /// Computes the normal of a triangle with the length of twice its area, in units of the table.

@@ -12,7 +12,7 @@ local frames, lines = require "glint.frames", require "glint.lines"
 local pdb = {}
 
 local TAKEN = { ATOM = true, HETATM = true, MODEL = true, ENDMDL = true, END = true, CRYST = true }
-local LAST_COLUMN = 54 -- of z
+local LAST_COLUMN = 54 -- last column of z
 
 local function set_of(words)
   local set = {}
