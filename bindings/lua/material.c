@@ -28,7 +28,7 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
 
 static void follow(void *desc) { glint_material_desc_resolve(desc); }
 
-static const char WARNED; // its address is a registry key; true there: the script was warned
+static const char WARNED; // address used as a registry key; the value true means that the script was warned
 
 static bool is_first(lua_State *L)
 {

@@ -8,7 +8,7 @@
 
 #include "bindings/run/run.h"
 
-static const char LIST; // its address is the registry key for the list of all parameters
+static const char LIST; // address used as the registry key for the list of all parameters
 
 typedef struct params_box {
     void *self; // see glintL_job

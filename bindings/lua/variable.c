@@ -4,7 +4,7 @@
 
 #include "bindings/run/run.h"
 
-static const char MATH; // its address is a registry key; true there: math is extended
+static const char MATH; // address used as a registry key; the value true means that math is extended
 
 static int push_result(lua_State *L, glintL_dual d)
 {

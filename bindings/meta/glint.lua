@@ -490,7 +490,7 @@ function group:close() end
 function glint.group(fields) end
 
 ---@class glint.combined_fields: glint.shape_fields
----@field [integer] glint.shape  its parts: spheres, boxes, capped cylinders and cones, tori, planes, closed meshes, combined solids and groups of these
+---@field [integer] glint.shape  the parts: spheres, boxes, capped cylinders and cones, tori, planes, closed meshes, combined solids and groups of these
 
 --- Everything inside any of its 1 .. 64 parts, as one solid (a torus counts twice, a closed mesh four times). A plane
 --- is the half-space behind it; a group is everything inside its shapes. A part shows only on the boundary of the
@@ -568,7 +568,7 @@ function glint.difference(fields) end
 ---@field margin? number  distance from the picture's border, points. Default nil: half of `size`
 ---@field color? glint.color  colour of letters and lines, without the tone curve. Default 1
 ---@field background? glint.color  colour of a rectangle behind the overlay. Default nil: none
----@field opacity? number  of the background, 0 .. 1. Default 1
+---@field opacity? number  opacity of the background, 0 .. 1. Default 1
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.label_fields: glint.overlay_fields
@@ -628,11 +628,11 @@ function glint.axes(fields) end
 ---@field label? string  as the text of a label; "" shows nothing. Default ""
 ---@field width? number  width of the line, points. Default nil: an eighth of `size`
 ---@field hidden? "drawn"|"dashed"|"none"  how the part behind surfaces is drawn. Default "drawn"
----@field size? number  of the letters, points, 1 .. 10000. Default nil: a 36th of the picture's height, 10 pixels at least
+---@field size? number  size of the letters, points, 1 .. 10000. Default nil: 1/36 of the picture's height, at least 10 pixels
 ---@field margin? number  distance from the line to the label, points. Default nil: half of `size`
 ---@field color? glint.color  colour of the line and the letters, without the tone curve. Default 1
 ---@field background? glint.color  colour of a rectangle behind the label. Default nil: none
----@field opacity? number  of the background, 0 .. 1. Default 1
+---@field opacity? number  opacity of the background, 0 .. 1. Default 1
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.line_fields: glint.curve_fields
@@ -787,7 +787,7 @@ function glint.scene(fields) end
 ---@field alpha? boolean  transparent background, also behind glass and translucent surfaces: a .png is RGBA, and passes store light times coverage. Default false
 ---@field outline? "none"|"black"|"white"  colour of lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  compression of a .png; the pixels are identical. Default "fast"
----@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of the .png of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  colour map for the .png of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
 ---@field dpi? number  pixels per inch for printing a .png, 0 .. 1e6. Default 0: not stored
 ---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  passes written in addition to the beauty: a list, or "ambient,depth"; "all": every pass except d:NAME. Default none
@@ -800,7 +800,7 @@ function glint.scene(fields) end
 ---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
 ---@field exposure? number  stops, -32 .. 32. Default 0
 ---@field encode? "fast"|"small"  Default "fast"
----@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  colour map for depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
 ---@field dpi? number  pixels per inch of a .png, 0 .. 1e6. Default 0: not stored
 ---@field pass? glint.pass  Default "beauty"
 

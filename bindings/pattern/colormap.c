@@ -4,14 +4,14 @@
 #include <math.h>
 #include <stdio.h>
 
-#define COLORMAP "glint.colormap" // the type of the userdata that hold the tables as textures
+#define COLORMAP "glint.colormap" // the type of the userdata that own the textures
 #define ENTRIES 256
 #define MISSING_CODE 128 // red, green and blue of missing values: grey
 
 const char *const glintL_colormaps[] = { "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
 _Static_assert(sizeof glintL_colormaps / sizeof *glintL_colormaps == GLINT_COLORMAP_COUNT + 1, "a name each");
 
-static const char TEXTURES; // its address is the registry key for the textures made so far, by colormap
+static const char TEXTURES; // address used as the registry key for the table of textures by colormap
 
 // Makes a texture of one row from a table of sRGB colours. Between texels it interpolates linear light.
 static glint_status make_texture(uint8_t rgb[ENTRIES][3], glint_texture **out, glint_error *error)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char PATTERNED; // its address is the registry key for materials with patterns, as weak keys
+static const char PATTERNED; // address used as the registry key for materials with patterns, as weak keys
 static const char CLOSED; // registry key for closed userdata whose materials may still be in a scene
 
 void glintL_refuse_within_trace(lua_State *L, const char *what)

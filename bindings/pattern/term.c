@@ -17,7 +17,7 @@ typedef struct traces {
     uint64_t count;
 } traces;
 
-static const char TRACES; // its address is a registry key
+static const char TRACES; // address used as a registry key
 
 static traces *get_traces(lua_State *L)
 {

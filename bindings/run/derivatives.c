@@ -6,7 +6,7 @@
 
 #define PI 0x1.921fb54442d18p+1
 
-static const char LIST; // its address is the registry key for the current frame's list
+static const char LIST; // address used as the registry key for the slopes of the current frame
 
 bool glintL_wants_variable(const glintL_run *run, const char *name)
 {

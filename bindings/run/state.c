@@ -10,7 +10,7 @@
 #define CALLERS_MAX 8 // lines of a traceback, at most
 #define LEVELS_MAX 200 // levels of the stack that are searched, since endless recursion fills the stack
 
-static const char RUN; // its address is the registry key for the run
+static const char RUN; // address used as the registry key for the run
 
 double glintL_now_ms(void)
 {

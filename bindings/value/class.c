@@ -4,7 +4,7 @@
 
 #include "bindings/value/glintL.h"
 
-static const char LISTED; // its address is the registry key for the table for glint._fields()
+static const char LISTED; // address used as the registry key for the result of glint._fields()
 
 typedef union description { // description of any object
     max_align_t align;

@@ -6,7 +6,7 @@
 
 #include "bindings/value/glintL.h"
 
-static const char VARIABLES; // its address is the registry key for the list of the variables' names
+static const char VARIABLES; // address used as the registry key for the list of the variables' names
 static const char SLOPED; // registry key for the userdata that store slopes, as weak keys
 
 // ---- Variables ----

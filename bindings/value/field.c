@@ -103,7 +103,7 @@ static void read_object(lua_State *L, int index, const char *path, const glintL_
 // before that.
 static void read_points(lua_State *L, int index, const char *path, void *out)
 {
-    static const char block; // its address is a registry key
+    static const char block; // address used as a registry key
     char element[PATH_SIZE + 24];
     if (!lua_istable(L, index))
         glintL_refuse(L, index, path, "list of {x, y, z}");

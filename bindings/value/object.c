@@ -5,11 +5,11 @@
 
 #include "bindings/value/glintL.h"
 
-static const char TRACING; // its address is the registry key for the functions for patterns
+static const char TRACING; // address used as the registry key for the functions for patterns
 
 #define OBJECT_BYTES 1024 // roughly the engine's memory for a sphere, light or material
 
-static const char BOXES; // its address is the registry key for the boxes by object
+static const char BOXES; // address used as the registry key for the table of boxes by object
 
 glintL_box *glintL_new_box(lua_State *L, const char *type)
 {

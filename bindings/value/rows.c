@@ -82,7 +82,7 @@ static void push_rows(lua_State *L, const glintL_field *fields)
     }
 }
 
-static const char VARIANTS; // its address is the registry key for the variants with rows, by name
+static const char VARIANTS; // address used as the registry key for the variants with rows, by name
 
 void glintL_note_rows(lua_State *L, const glintL_variant *variant)
 {
