@@ -914,9 +914,9 @@ typedef enum glint_overlay_kind {
 
 /// What is drawn of the part of an arrow, a line or an arc that lies behind surfaces. Surfaces count at any opacity.
 typedef enum glint_hidden {
-    GLINT_HIDDEN_DRAW, ///< the same as in front of surfaces
-    GLINT_HIDDEN_DASH, ///< dashes
-    GLINT_HIDDEN_HIDE ///< nothing; an arrow has no head and no label if its tip is hidden, and a line or an arc no
+    GLINT_HIDDEN_DRAWN, ///< the same as in front of surfaces
+    GLINT_HIDDEN_DASHED, ///< dashes
+    GLINT_HIDDEN_NONE ///< nothing; an arrow has no head and no label if its tip is hidden, and a line or an arc no
         ///< label if its middle is hidden
 } glint_hidden;
 

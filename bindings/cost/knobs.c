@@ -103,7 +103,7 @@ static bool takes_caps(const cost_scene *scene)
 static const char *const SHADOWS[] = { "off", "hard", "soft", "caps" };
 
 // Lists the shadows: soft ones for lights with a surface; also caps for sphere lights, if the scene allows caps. The
-// script's own value is that of its first light with a surface.
+// script's own value is the value of its first light with a surface.
 static void list_shadows(const cost_subject *subject, cost_values *out)
 {
     const cost_scene *scene = subject->scene;

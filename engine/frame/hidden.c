@@ -90,7 +90,7 @@ static bool find_parts(const glint_stages *stages, const glint_geometry_table *g
 
 static bool hides(const glint_overlay_desc *desc)
 {
-    return desc->kind >= GLINT_OVERLAY_ARROW && desc->hidden != GLINT_HIDDEN_DRAW;
+    return desc->kind >= GLINT_OVERLAY_ARROW && desc->hidden != GLINT_HIDDEN_DRAWN;
 }
 
 static glint_status find_all(const glint_stages *stages, const glint_plan *plan, glint_overlays *overlays,

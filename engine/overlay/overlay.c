@@ -201,7 +201,7 @@ static glint_status check_pointer(const glint_overlay_desc *desc, glint_error *e
         status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
     if (!status && desc->has_width)
         status = glint_check_range("width", desc->width, 0, POINTS_MAX, "points 0 .. 10000", error);
-    if (!status && (unsigned)desc->hidden > GLINT_HIDDEN_HIDE)
+    if (!status && (unsigned)desc->hidden > GLINT_HIDDEN_NONE)
         status = glint_fail(error, GLINT_ERR_INVALID, "hidden: drawn, dashed or none expected");
     return status;
 }

@@ -211,7 +211,7 @@ static void add_hidden(glint_strokes *strokes, const glint_layout *layout, const
                        double last)
 {
     const double pixel = (p->range[1] - p->range[0]) / p->length, width = 2 * strokes->half * pixel;
-    if (layout->desc->hidden == GLINT_HIDDEN_HIDE)
+    if (layout->desc->hidden == GLINT_HIDDEN_NONE)
         return;
     const double end = fmin(part[1], last), period = PERIOD * width;
     for (double at = part[0] + period - DASH * width; at < end && at + period > at; at += period)
@@ -244,7 +244,7 @@ static double add_head(glint_strokes *strokes, const glint_layout *layout, const
 {
     const double *tip = p->pixel[1], whole[2] = { tip[0] - p->pixel[0][0], tip[1] - p->pixel[0][1] };
     const double length = length_of(whole[0], whole[1]), size = fmin(HEAD_LENGTH * 2 * strokes->half, length);
-    const bool shown = layout->desc->hidden != GLINT_HIDDEN_HIDE || !is_hidden(layout, 1);
+    const bool shown = layout->desc->hidden != GLINT_HIDDEN_NONE || !is_hidden(layout, 1);
     if (p->range[1] < 1 || p->behind[1] || !shown || !(length > 0))
         return p->range[1];
     const double offset[2] = { whole[0] / length, whole[1] / length }, half = size * HEAD_HALF / HEAD_LENGTH;
@@ -285,7 +285,7 @@ bool glint_pointer_shows_text(const glint_layout *layout)
     const glint_overlay_desc *desc = layout->desc;
     const glint_pointer *p = &layout->place->pointer;
     const bool is_cut = desc->kind == GLINT_OVERLAY_ARROW && p->behind[1];
-    const bool hides = desc->kind != GLINT_OVERLAY_LABEL && desc->hidden == GLINT_HIDDEN_HIDE;
+    const bool hides = desc->kind != GLINT_OVERLAY_LABEL && desc->hidden == GLINT_HIDDEN_NONE;
     return p->count && !is_cut && desc->text[0] && !(hides && is_hidden(layout, anchor_at(desc, p)));
 }
 

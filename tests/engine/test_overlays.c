@@ -481,7 +481,7 @@ static void test_key(void **state)
     changed[24] = arrow, changed[24].to[2] = 1;
     changed[25] = arrow, changed[25].has_width = true;
     changed[26] = changed[25], changed[26].width = 3;
-    changed[27] = arrow, changed[27].hidden = GLINT_HIDDEN_DASH;
+    changed[27] = arrow, changed[27].hidden = GLINT_HIDDEN_DASHED;
     changed[28] = arrow, changed[28].kind = GLINT_OVERLAY_LINE;
     changed[29] = arc;
     changed[30] = arc, changed[30].point[0] = 1;
