@@ -36,7 +36,8 @@ layer engine/base
 layer engine/scene engine/stages $base
 layer engine/geometry engine/scene engine/stages $base
 layer engine/text $base
-layer engine/overlay engine/text $base
+layer engine/ink engine/text $base
+layer engine/overlay engine/ink engine/text $base
 layer engine/film engine/overlay engine/stages $base
 layer engine/program engine/file $stages $base
 # An effect's plan.h belongs to the plan; its other headers belong to tile rendering and to the frame around it.
@@ -49,9 +50,9 @@ layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film
 layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/overlay engine/film $base
 includes 'engine/effects/*/*.[ch]' "$effects" engine/frame engine/tile engine/program engine/reuse engine/plan engine/geometry engine/scene \
     engine/film $stages engine/stages/light $base
-layer engine/file engine/text engine/overlay engine/film engine/stages $base
+layer engine/file engine/ink engine/text engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
-layer engine/sheet engine/text engine/overlay engine/file $base
+layer engine/sheet engine/ink engine/text engine/overlay engine/file $base
 
 layer bindings/value
 layer bindings/run bindings/value

@@ -8,6 +8,7 @@
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
 #include "engine/film/tone.h"
+#include "engine/ink/stamps.h"
 
 #include <float.h>
 #include <math.h>
@@ -286,13 +287,28 @@ static glint_status fail_not_stored(const glint_image *image, glint_pass pass, g
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", glint_pass_name(pass));
 }
 
+/// Makes the stamps of an image's overlays.
+static glint_status make_stamps(picture *p, double dpi, glint_error *error)
+{
+    const glint_overlays *overlays = p->image->overlays;
+    glint_ink ink;
+    glint_status status = glint_ink_open(overlays->width, overlays->height, &ink, error);
+    if (status)
+        return status;
+    status = glint_overlays_draw(overlays, dpi, &ink, error);
+    if (!status)
+        status = glint_stamps_make(&ink, p->tone.transfer, p->tone.bits, &p->stamps, error);
+    glint_ink_close(&ink);
+    return status;
+}
+
 /// Draws the overlays into the rows. The stamps of the rows of tiles under an overlay become 0.
 /// stamps  written: the new stamps of the source; the caller frees them.
 static glint_status lay_over(picture *p, glint_png_source *source, double dpi, uint64_t **stamps, glint_error *error)
 {
     const glint_image *image = p->image;
     const size_t count = glint_image_stamps(image);
-    glint_status status = glint_overlays_draw(image->overlays, dpi, p->tone.transfer, p->tone.bits, &p->stamps, error);
+    const glint_status status = make_stamps(p, dpi, error);
     if (status)
         return status;
     p->plain = source->row;

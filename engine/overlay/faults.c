@@ -125,15 +125,15 @@ static void check_pointer(const check *c)
 glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
                                   void *context, glint_error *error)
 {
-    glint_letters *letters;
+    glint_ink ink;
     glint_place *places = NULL;
-    glint_status status = glint_letters_open(&letters, error);
+    glint_status status = glint_ink_open(overlays->width, overlays->height, &ink, error);
     if (status)
         return status;
     status = glint_layout_places(overlays, &places, error);
     for (size_t i = 0; i < overlays->count && !status; i++) {
         const glint_overlay_desc *desc = &overlays->of[i];
-        glint_layout layout = glint_layout_begin_at(overlays, i, dpi, letters, places, NULL);
+        glint_layout layout = glint_layout_begin_at(overlays, i, dpi, places, &ink);
         check c = { .layout = &layout, .warns = warns, .context = context };
         describe(&c);
         check_letters(&c, desc->text);
@@ -148,6 +148,6 @@ glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, vo
             check_position(&c);
     }
     free(places);
-    glint_letters_close(letters);
+    glint_ink_close(&ink);
     return status;
 }

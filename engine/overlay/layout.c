@@ -45,13 +45,12 @@ static void draw_label(const glint_layout *layout, int x, int y)
     glint_layout_text(layout, layout->text, x, y, layout->width, align, desc->color);
 }
 
-glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,
-                                glint_stamps *stamps)
+glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_ink *ink)
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_ARC] = 0 };
-    glint_layout layout = { .overlays = overlays, .desc = desc, .stamps = stamps };
+    glint_layout layout = { .overlays = overlays, .desc = desc, .ink = ink };
     layout.em = desc->has_size ? glint_layout_pixels(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
-    layout.typeface = glint_typeface_open(letters, layout.em);
+    layout.typeface = glint_typeface_open(ink->letters, layout.em);
     if (desc->kind != GLINT_OVERLAY_LABEL)
         layout.length = desc->has_length ? glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;
     layout.padding = desc->has_background ? (int)ceil(PADDING * layout.em) : 0;
@@ -73,10 +72,9 @@ glint_status glint_layout_places(const glint_overlays *overlays, glint_place **o
     return GLINT_OK;
 }
 
-glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, double dpi, glint_letters *letters,
-                                   glint_place *places, glint_stamps *stamps)
+glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, double dpi, glint_place *places, glint_ink *ink)
 {
-    glint_layout layout = glint_layout_begin(overlays, &overlays->of[i], dpi, letters, stamps);
+    glint_layout layout = glint_layout_begin(overlays, &overlays->of[i], dpi, ink);
     layout.places = places;
     layout.place = places ? &places[i] : NULL;
     layout.hidden = overlays->hidden ? &overlays->hidden[i] : NULL;
@@ -138,37 +136,31 @@ static void draw(glint_layout *layout, double dpi)
     draws[desc->kind](layout, corner[0] + layout->padding, corner[1] + layout->padding);
 }
 
-glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
-                                 glint_stamps *out, glint_error *error)
+glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_ink *ink, glint_error *error)
 {
-    glint_letters *letters;
     glint_place *places;
-    *out = (glint_stamps) { .transfer = transfer, .bits = bits };
-    glint_status status = glint_letters_open(&letters, error);
-    if (status)
-        return status;
-    status = glint_layout_places(overlays, &places, error);
+    glint_status status = glint_layout_places(overlays, &places, error);
     for (size_t i = 0; i < overlays->count && !status; i++) {
-        glint_layout layout = glint_layout_begin_at(overlays, i, dpi, letters, places, out);
+        glint_layout layout = glint_layout_begin_at(overlays, i, dpi, places, ink);
         draw(&layout, dpi);
     }
     free(places);
-    out->lost = out->lost || glint_letters_lost(letters);
-    glint_letters_close(letters);
-    if (!out->lost)
-        return status;
-    glint_stamps_free(out);
-    return glint_fail_nomem(error);
+    return status ? status : glint_ink_check(ink, error);
 }
 
-void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters, const int sides[2], int x, int y,
-                          glint_stamps *stamps, int size[2])
+void glint_colorbar_measure_alone(const glint_overlay_desc *desc, glint_ink *ink, int size[2])
 {
-    const glint_overlays overlays = { .width = sides[0], .height = sides[1] };
-    glint_layout layout = glint_layout_begin(&overlays, desc, 0, letters, stamps);
+    const glint_overlays overlays = { .width = ink->width, .height = ink->height };
+    glint_layout layout = glint_layout_begin(&overlays, desc, 0, ink);
     glint_colorbar_measure(&layout);
     size[0] = layout.width;
     size[1] = layout.height;
-    if (stamps)
-        glint_colorbar_draw(&layout, x, y);
+}
+
+void glint_colorbar_draw_alone(const glint_overlay_desc *desc, glint_ink *ink, int x, int y)
+{
+    const glint_overlays overlays = { .width = ink->width, .height = ink->height };
+    glint_layout layout = glint_layout_begin(&overlays, desc, 0, ink);
+    glint_colorbar_measure(&layout);
+    glint_colorbar_draw(&layout, x, y);
 }

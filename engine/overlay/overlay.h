@@ -2,19 +2,17 @@
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key
-///     layout.c     the position of each, in stamps; colorbar.c, axes.c, box_axes.c: their parts
+///     layout.c     the position of each; colorbar.c, axes.c, box_axes.c: their parts
 ///     marks.c      the round numbers along colour bars and axes
 ///     pointer.c    the curves of arrows, lines and arcs in the picture, and positions for texts next to them
-///     drawing.c    texts and rectangles, as stamps
-///     strokes.c    straight strokes and arrowheads, as stamps
-///     stamp.c      stamps on rows of codes
+///     drawing.c    texts, rectangles and strokes, in the ink of engine/ink
 ///     faults.c     warnings about overlays that the picture cannot show
 #ifndef GLINT_OVERLAY_H
 #define GLINT_OVERLAY_H
 
 #include "engine/base/hash.h"
 #include "engine/glint.h"
-#include "engine/text/letters.h"
+#include "engine/ink/ink.h"
 
 #include <stdatomic.h>
 
@@ -69,43 +67,15 @@ void glint_overlays_release(glint_overlays *overlays); ///< NULL: no effect
 /// Extends a key by everything that the overlays' pixels depend on, except the codes below them and the file's dpi.
 glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key);
 
-/// A rectangle of one colour, with the codes of one picture.
-typedef struct glint_stamp {
-    int x, y, width, height; ///< rectangle in the whole picture, pixels; may lie outside the picture
-    uint8_t *coverage; ///< width * height values; NULL: 255 everywhere. Owned
-    uint8_t opacity; ///< factor of the coverage; 255: opaque
-    uint16_t ink[3]; ///< codes
-} glint_stamp;
-
-/// Stamps in drawing order, for one picture.
-typedef struct glint_stamps {
-    glint_stamp *of;
-    size_t count, capacity;
-    bool lost; ///< out of memory: some stamps are missing
-    glint_transfer transfer; ///< of the codes
-    int bits; ///< bits of the codes: 8 or 16
-} glint_stamps;
-
+/// Draws the overlays on a page of the size of the whole picture.
 /// dpi  pixels per inch; 0: not given.
-glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
-                                 glint_stamps *out, glint_error *error);
+glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_ink *ink, glint_error *error);
 /// Calls `warns` for overlays outside the picture, lines wider than the picture, and letters that the font lacks.
 glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
                                   void *context, glint_error *error);
-/// Draws a separate colour bar whose lengths are in pixels on a sheet of `sides` pixels.
-/// x, y    its upper left corner.
-/// stamps  out: the stamps are added here; NULL: only measures.
-/// size    out: width and height.
-void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters, const int sides[2], int x, int y,
-                          glint_stamps *stamps, int size[2]);
-void glint_stamps_free(glint_stamps *stamps);
-/// Adds a stamp of a linear colour. Takes over its coverage, which is freed at once if memory is short.
-void glint_stamps_add(glint_stamps *stamps, glint_stamp stamp, const double color[3]);
-/// Returns whether a stamp has a pixel in the `count` rows of the whole picture that begin with row `first`.
-bool glint_stamps_touch(const glint_stamps *stamps, int first, int count);
-/// Draws the stamps on a row of codes.
-/// codes     `width` pixels of 3 or 4 channels, of the stamps' bits; alpha is not premultiplied.
-/// x, y      of the first pixel, in the whole picture.
-void glint_stamps_row(const glint_stamps *stamps, int x, int y, int width, int channels, void *codes);
+/// Measures a separate colour bar whose lengths are in pixels. size  out: width and height.
+void glint_colorbar_measure_alone(const glint_overlay_desc *desc, glint_ink *ink, int size[2]);
+/// Draws a separate colour bar whose upper left corner is x, y.
+void glint_colorbar_draw_alone(const glint_overlay_desc *desc, glint_ink *ink, int x, int y);
 
 #endif

@@ -9,8 +9,8 @@
 ///
 /// A colour bar for all pictures is at the right, or below.
 #include "engine/base/status.h"
+#include "engine/ink/stamps.h"
 #include "engine/overlay/overlay.h"
-#include "engine/sheet/canvas.h"
 #include "engine/file/file.h"
 #include "engine/file/png.h"
 #include "engine/file/write.h"
@@ -20,9 +20,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define INK 0x222222
-#define FAINT_INK 0x6a6a6a
-#define MARK 0xd9594c // colour of the frame around the chosen cell
+#define TEXT_COLOR 0x222222
+#define FAINT_COLOR 0x6a6a6a
+#define FRAME_COLOR 0xd9594c // of the frame around the chosen cell
 #define LARGE_PICTURE 900 // labels of pictures at least this wide are twice as large; pixels
 #define AREA_MAX ((int64_t)400000000) // most pixels of a sheet: 1.2 GB while the sheet is drawn
 #define PART_GAP 2 // gap between parts of a label on the same line, in letters
@@ -34,10 +34,9 @@
 typedef struct layout {
     const glint_sheet_desc *desc;
     int width, height; ///< of each picture
-    glint_letters *letters; ///< owned; NULL: the bitmap font
+    glint_ink ink; ///< everything except the pixels of pictures. Owned
     glint_typeface typeface, title; ///< typeface of labels; typeface of the title, which is twice as large
     double unit; ///< pixels in a 13th of the label size
-    bool lost; ///< out of memory: some text is missing
     int rows;
     int column, label; ///< width of a column; height of the label below a picture
     int left, top; ///< position of the first picture
@@ -49,6 +48,20 @@ typedef struct layout {
     int bar_size[2];
     int64_t sheet_width, sheet_height;
 } layout;
+
+/// The pixels of a sheet's pictures, on white or transparent paper.
+typedef struct canvas {
+    int width, height;
+    int channels; ///< 3 or 4
+    uint8_t *pixels; ///< channels * width * height values, top row first. Owned
+} canvas;
+
+/// Converts a colour 0xRRGGBB to linear.
+static void to_linear(uint32_t color, double out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = glint_srgb_decode((color >> (16 - 8 * c) & 255) / 255.0);
+}
 
 // ---- Labels -------------------------------------------------------------------------------------------------------
 
@@ -74,15 +87,17 @@ static int widest_part(const layout *l, const char *label)
     return widest;
 }
 
-static void write_text(layout *l, glint_canvas *canvas, const glint_typeface *typeface, int x, int y, const char *text,
-                       size_t size, uint32_t color)
+static void write_text(layout *l, const glint_typeface *typeface, int x, int y, const char *text, size_t size, glint_turn turn,
+                       uint32_t color)
 {
-    l->lost = !glint_canvas_text(canvas, typeface, x, y, text, size, color) || l->lost;
+    double linear[3];
+    to_linear(color, linear);
+    glint_ink_text(&l->ink, typeface, text, size, x, y, turn, linear);
 }
 
-/// Breaks `label` into lines at most `space` wide; parts share a line if they fit. Unless `canvas` is NULL, draws the
-/// lines from `y` down, centred between `x` and `x` + `space`. Returns the number of lines.
-static int set_label(layout *l, const char *label, int space, glint_canvas *canvas, int x, int y)
+/// Breaks `label` into lines at most `space` wide; parts share a line if they fit. If `draws`, draws the lines
+/// from `y` down, centred between `x` and `x` + `space`. Returns the number of lines.
+static int set_label(layout *l, const char *label, int space, bool draws, int x, int y)
 {
     int lines = 0;
     while (label && *label) {
@@ -98,8 +113,8 @@ static int set_label(layout *l, const char *label, int space, glint_canvas *canv
         }
         for (int at = x + (space - width) / 2; label < part;) {
             size_t size = strcspn(label, "\n");
-            if (canvas)
-                write_text(l, canvas, &l->typeface, at, y + lines * line_height(l), label, size, INK);
+            if (draws)
+                write_text(l, &l->typeface, at, y + lines * line_height(l), label, size, GLINT_LEVEL, TEXT_COLOR);
             at += text_width(l, label, size) + gap;
             label += size + (label[size] == '\n');
         }
@@ -119,16 +134,14 @@ static int64_t grid_size(const layout *l, bool across)
 /// Lays out the colour bar, and reserves its space next to the grid, which is measured already.
 static void measure_bar(layout *l)
 {
-    static const int sides[2] = { GLINT_SIDE_MAX, GLINT_SIDE_MAX };
     const double size = SIZE * l->unit, dpi = l->desc->dpi;
     const bool across = l->desc->colorbar->orientation == GLINT_HORIZONTAL;
     l->bar = *l->desc->colorbar;
     l->bar.length = l->bar.has_length ? l->bar.length * (dpi > 0 ? dpi / 72 : 1) : fmin((double)grid_size(l, across), BAR_MOST * size);
     l->bar.size = size;
     l->bar.has_length = l->bar.has_size = true;
-    for (int c = 0; c < 3; c++)
-        l->bar.color[c] = glint_srgb_decode((INK >> (16 - 8 * c) & 255) / 255.0);
-    glint_colorbar_alone(&l->bar, l->letters, sides, 0, 0, NULL, l->bar_size);
+    to_linear(TEXT_COLOR, l->bar.color);
+    glint_colorbar_measure_alone(&l->bar, &l->ink, l->bar_size);
     const int64_t least[2] = { l->left + (int64_t)l->bar_size[0] + l->gap, l->top + (int64_t)l->bar_size[1] + l->gap };
     l->sheet_width += across ? 0 : l->bar_size[0] + l->gap;
     l->sheet_height += across ? l->bar_size[1] + l->gap : 0;
@@ -156,45 +169,45 @@ static void measure_sheet(layout *l)
     for (int i = 0; i < 2; i++)
         l->sheet_width = least[i] > l->sheet_width ? least[i] : l->sheet_width;
     if (l->sheet_width <= GLINT_SIDE_MAX)
-        l->note_lines = set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, NULL, 0, 0);
+        l->note_lines = set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, false, 0, 0);
     l->sheet_height += (int64_t)l->note_lines * line_height(l) + (l->note_lines ? l->gap / 2 : 0);
 }
 
-static layout measure(const glint_sheet_desc *desc, int width, int height, glint_letters *letters)
+/// Measures a sheet. Its description, the size of a picture and the ink are set.
+static void measure(layout *l)
 {
-    layout l = { .desc = desc, .width = width, .height = height, .letters = letters };
+    const glint_sheet_desc *desc = l->desc;
     int lines = 0;
     bool differs = desc->difference > 0;
     const double size = desc->size > 0 ? desc->size * (desc->dpi > 0 ? desc->dpi / 72 : 1)
-                                       : SIZE * (width >= LARGE_PICTURE ? 2 : 1);
-    l.unit = (size < GLINT_SIDE_MAX / 2 ? size : GLINT_SIDE_MAX / 2) / SIZE;
-    l.typeface = glint_typeface_open(letters, SIZE * l.unit);
-    l.title = glint_typeface_open(letters, 2 * SIZE * l.unit);
-    l.gap = pixels(&l, 12);
-    l.rows = (int)((desc->cell_count + (size_t)desc->columns - 1) / (size_t)desc->columns);
-    l.column = width;
+                                       : SIZE * (l->width >= LARGE_PICTURE ? 2 : 1);
+    l->unit = (size < GLINT_SIDE_MAX / 2 ? size : GLINT_SIDE_MAX / 2) / SIZE;
+    l->typeface = glint_typeface_open(l->ink.letters, SIZE * l->unit);
+    l->title = glint_typeface_open(l->ink.letters, 2 * SIZE * l->unit);
+    l->gap = pixels(l, 12);
+    l->rows = (int)((desc->cell_count + (size_t)desc->columns - 1) / (size_t)desc->columns);
+    l->column = l->width;
     for (size_t i = 0; i < desc->cell_count; i++) {
-        int widest = widest_part(&l, desc->cells[i].label);
-        l.column = widest > l.column ? widest : l.column;
+        int widest = widest_part(l, desc->cells[i].label);
+        l->column = widest > l->column ? widest : l->column;
     }
     for (size_t i = 0; i < desc->cell_count; i++) {
-        int count = set_label(&l, desc->cells[i].label, l.column, NULL, 0, 0);
+        int count = set_label(l, desc->cells[i].label, l->column, false, 0, 0);
         lines = count > lines ? count : lines;
     }
     lines = differs && lines < 1 ? 1 : lines;
-    l.label = lines * line_height(&l) + (lines ? pixels(&l, 4) : 0);
-    l.left = l.gap + (desc->down ? line_height(&l) + l.gap / 2 : 0);
-    l.top = l.gap + (desc->title ? l.title.line + l.gap : 0) + (desc->across ? line_height(&l) + l.gap / 2 : 0);
-    l.band = (differs ? 2 : 1) * (height + l.label + l.gap);
-    measure_sheet(&l);
-    return l;
+    l->label = lines * line_height(l) + (lines ? pixels(l, 4) : 0);
+    l->left = l->gap + (desc->down ? line_height(l) + l->gap / 2 : 0);
+    l->top = l->gap + (desc->title ? l->title.line + l->gap : 0) + (desc->across ? line_height(l) + l->gap / 2 : 0);
+    l->band = (differs ? 2 : 1) * (l->height + l->label + l->gap);
+    measure_sheet(l);
 }
 
 // ---- Drawing ------------------------------------------------------------------------------------------------------
 
-static uint8_t *row_at(glint_canvas *canvas, int x, int y)
+static uint8_t *row_at(canvas *paper, int x, int y)
 {
-    return canvas->pixels + ((size_t)y * (size_t)canvas->width + (size_t)x) * (size_t)canvas->channels;
+    return paper->pixels + ((size_t)y * (size_t)paper->width + (size_t)x) * (size_t)paper->channels;
 }
 
 /// Computes the upper left corner of the picture of cell `i`, from 0.
@@ -206,7 +219,7 @@ static void place_cell(const layout *l, size_t i, int *x, int *y)
 }
 
 /// Draws |a - b| times the gain below picture `a`, with a text. Both pictures are on the canvas already.
-static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
+static void draw_difference(layout *l, canvas *paper, size_t a, size_t b)
 {
     int ax, ay, bx, by, most = 0;
     int64_t count = 0;
@@ -215,10 +228,10 @@ static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
     place_cell(l, b, &bx, &by);
     int y = ay + l->band / 2;
     for (int row = 0; row < l->height; row++) {
-        const uint8_t *from = row_at(canvas, ax, ay + row), *to = row_at(canvas, bx, by + row);
-        uint8_t *out = row_at(canvas, ax, y + row);
+        const uint8_t *from = row_at(paper, ax, ay + row), *to = row_at(paper, bx, by + row);
+        uint8_t *out = row_at(paper, ax, y + row);
         for (int x = 0; x < l->width; x++) {
-            const int at = x * canvas->channels;
+            const int at = x * paper->channels;
             int largest = 0;
             for (int c = 0; c < 3; c++) {
                 int difference = abs(from[at + c] - to[at + c]);
@@ -226,7 +239,7 @@ static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
                 out[at + c] = (uint8_t)(shown < 255 ? shown : 255);
                 largest = difference > largest ? difference : largest;
             }
-            if (canvas->channels == 4)
+            if (paper->channels == 4)
                 out[at + 3] = 255;
             most = largest > most ? largest : most;
             count += largest > 0;
@@ -236,56 +249,60 @@ static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
         snprintf(label, sizeof label, "cell %zu", b + 1);
     else
         snprintf(label, sizeof label, "max %d\n%.3g %%", most, 100.0 * (double)count / ((double)l->width * l->height));
-    set_label(l, label, l->column, canvas, ax - (l->column - l->width) / 2, y + l->height + pixels(l, 4));
+    set_label(l, label, l->column, true, ax - (l->column - l->width) / 2, y + l->height + pixels(l, 4));
 }
 
-static void draw_differences(layout *l, glint_canvas *canvas)
+/// Draws a frame just outside a picture.
+static void draw_frame(layout *l, int x, int y)
+{
+    const int t = pixels(l, 3);
+    double color[3];
+    to_linear(FRAME_COLOR, color);
+    glint_ink_fill(&l->ink, x - t, y - t, l->width + 2 * t, t, color, 1);
+    glint_ink_fill(&l->ink, x - t, y + l->height, l->width + 2 * t, t, color, 1);
+    glint_ink_fill(&l->ink, x - t, y, t, l->height, color, 1);
+    glint_ink_fill(&l->ink, x + l->width, y, t, l->height, color, 1);
+}
+
+static void draw_differences(layout *l, canvas *paper)
 {
     size_t chosen = l->desc->difference - 1;
     int x, y;
     for (size_t i = 0; i < l->desc->cell_count; i++)
-        draw_difference(l, canvas, i, chosen);
+        draw_difference(l, paper, i, chosen);
     place_cell(l, chosen, &x, &y);
-    glint_canvas_frame(canvas, x, y, l->width, l->height, pixels(l, 3), MARK);
+    draw_frame(l, x, y);
     y = (int)l->sheet_height - l->note_lines * line_height(l) - l->gap / 2;
-    set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, canvas, l->left, y);
+    set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, true, l->left, y);
 }
 
 /// Draws the colour bar in the middle of the grid's right side, or below the grid.
-static void draw_bar(layout *l, glint_canvas *canvas)
+static void draw_bar(layout *l)
 {
-    const int sides[2] = { canvas->width, canvas->height };
     const bool across = l->bar.orientation == GLINT_HORIZONTAL;
     const int space = (int)grid_size(l, across) - l->bar_size[across ? 0 : 1], shift = space > 0 ? space / 2 : 0;
     const int beyond = (int)grid_size(l, !across) + l->gap;
-    glint_stamps stamps = { .transfer = GLINT_TRANSFER_SRGB, .bits = 8 };
-    glint_colorbar_alone(&l->bar, l->letters, sides, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift), &stamps,
-                         l->bar_size);
-    for (int y = 0; y < canvas->height; y++)
-        glint_stamps_row(&stamps, 0, y, canvas->width, canvas->channels, row_at(canvas, 0, y));
-    l->lost = l->lost || stamps.lost;
-    glint_stamps_free(&stamps);
+    glint_colorbar_draw_alone(&l->bar, &l->ink, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift));
 }
 
 /// Draws "name ->" centred above the columns, and centred next to the rows.
-static void draw_titles(layout *l, glint_canvas *canvas)
+static void draw_titles(layout *l)
 {
     const glint_sheet_desc *desc = l->desc;
     char text[256];
     if (desc->title)
-        write_text(l, canvas, &l->title, l->left, l->gap, desc->title, SIZE_MAX, INK);
+        write_text(l, &l->title, l->left, l->gap, desc->title, SIZE_MAX, GLINT_LEVEL, TEXT_COLOR);
     if (desc->across) {
         int grid = (int)grid_size(l, true);
         snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->across);
-        write_text(l, canvas, &l->typeface, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
-                   l->top - line_height(l) - l->gap / 2, text, SIZE_MAX, FAINT_INK);
+        write_text(l, &l->typeface, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
+                   l->top - line_height(l) - l->gap / 2, text, SIZE_MAX, GLINT_LEVEL, FAINT_COLOR);
     }
     if (desc->down) {
         int grid = (int)grid_size(l, false);
         snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->down);
         int y = l->top + (grid - text_width(l, text, SIZE_MAX)) / 2;
-        l->lost = !glint_canvas_text_down(canvas, &l->typeface, l->gap + l->typeface.height, y > 0 ? y : 0, text,
-                                          FAINT_INK) || l->lost;
+        write_text(l, &l->typeface, l->gap, y > 0 ? y : 0, text, SIZE_MAX, GLINT_DOWN, FAINT_COLOR);
     }
 }
 
@@ -298,16 +315,16 @@ static glint_status check_size(const layout *l, const glint_picture *picture, co
                       l->width, l->height, l->desc->cells[0].path, width, height);
 }
 
-static void put_row(const glint_picture *picture, int row, const glint_canvas *canvas, uint8_t *out)
+static void put_row(const glint_picture *picture, int row, const canvas *paper, uint8_t *out)
 {
     glint_picture_row(picture, row, 255, out);
-    for (int x = glint_picture_width(picture) - 1; x >= 0 && canvas->channels == 4; x--) { // backwards, in place
+    for (int x = glint_picture_width(picture) - 1; x >= 0 && paper->channels == 4; x--) { // backwards, in place
         memmove(out + 4 * x, out + 3 * x, 3);
         out[4 * x + 3] = 255;
     }
 }
 
-static glint_status draw_cell(layout *l, glint_canvas *canvas, size_t i, glint_error *error)
+static glint_status draw_cell(layout *l, canvas *paper, size_t i, glint_error *error)
 {
     const glint_sheet_cell *cell = &l->desc->cells[i];
     glint_picture *picture = NULL;
@@ -317,29 +334,29 @@ static glint_status draw_cell(layout *l, glint_canvas *canvas, size_t i, glint_e
     if (!status)
         status = check_size(l, picture, cell->path, error);
     for (int row = 0; row < l->height && !status; row++)
-        put_row(picture, row, canvas, row_at(canvas, x, y + row));
+        put_row(picture, row, paper, row_at(paper, x, y + row));
     glint_picture_destroy(picture);
-    set_label(l, cell->label, l->column, canvas, x - (l->column - l->width) / 2, y + l->height + pixels(l, 4));
+    set_label(l, cell->label, l->column, true, x - (l->column - l->width) / 2, y + l->height + pixels(l, 4));
     return status;
 }
 
 static const void *row_of_canvas(const void *user, int y, void *scratch)
 {
-    const glint_canvas *canvas = user;
+    const canvas *paper = user;
     (void)scratch;
-    return canvas->pixels + (size_t)y * (size_t)canvas->width * (size_t)canvas->channels;
+    return paper->pixels + (size_t)y * (size_t)paper->width * (size_t)paper->channels;
 }
 
-static glint_status write_canvas(const glint_canvas *canvas, double dpi, const char *path, glint_error *error)
+static glint_status write_canvas(const canvas *paper, double dpi, const char *path, glint_error *error)
 {
     glint_text text = { "Software", "glint " GLINT_VERSION };
     glint_png_source source = {
-        .width = canvas->width, .height = canvas->height, .row = row_of_canvas, .user = canvas
+        .width = paper->width, .height = paper->height, .row = row_of_canvas, .user = paper
     };
     glint_png_desc png = { .encode = GLINT_ENCODE_SMALL, .text = &text, .text_count = 1, .dpi = dpi };
     glint_bytes bytes = { 0 };
     source.tone = glint_tone_desc_default();
-    source.alpha = canvas->channels == 4;
+    source.alpha = paper->channels == 4;
     glint_status status = glint_png_encode(NULL, &source, &png, &bytes, NULL, error);
     if (!status)
         status = glint_file_write(path, bytes.data, bytes.size, error);
@@ -347,24 +364,47 @@ static glint_status write_canvas(const glint_canvas *canvas, double dpi, const c
     return status;
 }
 
+/// Fills the paper with white; with alpha, with transparency. False: out of memory.
+static bool make_paper(const layout *l, canvas *out)
+{
+    const bool alpha = l->desc->transparent;
+    const int channels = alpha ? 4 : 3;
+    const size_t size = (size_t)l->sheet_width * (size_t)l->sheet_height * (size_t)channels;
+    *out = (canvas) { (int)l->sheet_width, (int)l->sheet_height, channels, malloc(size) };
+    if (out->pixels)
+        memset(out->pixels, alpha ? 0 : 255, size);
+    return out->pixels != NULL;
+}
+
+/// Draws the ink on the paper.
+static glint_status draw_ink(const layout *l, canvas *paper, glint_error *error)
+{
+    glint_stamps stamps;
+    const glint_status status = glint_stamps_make(&l->ink, GLINT_TRANSFER_SRGB, 8, &stamps, error);
+    for (int y = 0; y < paper->height && !status; y++)
+        glint_stamps_row(&stamps, 0, y, paper->width, paper->channels, row_at(paper, 0, y));
+    glint_stamps_free(&stamps);
+    return status;
+}
+
 static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
 {
-    glint_canvas canvas;
-    if (!glint_canvas_init(&canvas, (int)l->sheet_width, (int)l->sheet_height, l->desc->transparent))
+    canvas paper;
+    if (!make_paper(l, &paper))
         return glint_fail_nomem(error);
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < l->desc->cell_count && !status; i++)
-        status = draw_cell(l, &canvas, i, error);
+        status = draw_cell(l, &paper, i, error);
     if (!status && l->desc->difference)
-        draw_differences(l, &canvas);
-    draw_titles(l, &canvas);
+        draw_differences(l, &paper);
+    draw_titles(l);
     if (l->desc->colorbar)
-        draw_bar(l, &canvas);
-    if (!status && (l->lost || glint_letters_lost(l->letters)))
-        status = glint_fail_nomem(error);
+        draw_bar(l);
     if (!status)
-        status = write_canvas(&canvas, l->desc->dpi, path, error);
-    free(canvas.pixels);
+        status = draw_ink(l, &paper, error);
+    if (!status)
+        status = write_canvas(&paper, l->desc->dpi, path, error);
+    free(paper.pixels);
     return status;
 }
 
@@ -420,19 +460,23 @@ glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, g
     GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(path, error);
     glint_picture *first = NULL;
-    glint_letters *letters = NULL;
+    layout l = { .desc = desc };
     glint_status status = check_desc(desc, path, error);
     if (!status)
         status = glint_picture_read(desc->cells[0].path, false, &first, error);
     if (!status)
-        status = glint_letters_open(&letters, error);
+        status = glint_ink_open(GLINT_SIDE_MAX, GLINT_SIDE_MAX, &l.ink, error);
     if (!status) {
-        layout l = measure(desc, glint_picture_width(first), glint_picture_height(first), letters);
+        l.width = glint_picture_width(first);
+        l.height = glint_picture_height(first);
+        measure(&l);
         status = check_sides(&l, error);
-        if (!status)
-            status = draw_sheet(&l, path, error);
     }
-    glint_letters_close(letters);
+    if (!status) {
+        glint_ink_resize(&l.ink, (int)l.sheet_width, (int)l.sheet_height);
+        status = draw_sheet(&l, path, error);
+    }
+    glint_ink_close(&l.ink);
     glint_picture_destroy(first);
     return status;
 }

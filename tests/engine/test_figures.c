@@ -4,7 +4,7 @@
 #include <png.h>
 
 #include "engine/file/pfm.h"
-#include "engine/sheet/canvas.h"
+#include "engine/ink/stamps.h"
 #include "engine/text/font.h"
 
 // ---- Drafts -------------------------------------------------------------------------------------------------------
@@ -173,33 +173,75 @@ static void test_font(void **state)
     assert_ptr_equal(glint_font_next(&smile), box);
 }
 
-static void test_canvas(void **state)
+/// Draws a page on rows of black or transparent pixels. The caller frees the pixels.
+static uint8_t *draw_page(const glint_ink *ink, int channels)
+{
+    glint_stamps stamps;
+    const size_t row = (size_t)ink->width * (size_t)channels;
+    uint8_t *pixels = calloc((size_t)ink->height, row);
+    assert_non_null(pixels);
+    assert_int_equal(glint_stamps_make(ink, GLINT_TRANSFER_LINEAR, 8, &stamps, NULL), GLINT_OK);
+    for (int y = 0; y < ink->height; y++)
+        glint_stamps_row(&stamps, 0, y, ink->width, channels, pixels + (size_t)y * row);
+    glint_stamps_free(&stamps);
+    return pixels;
+}
+
+static void test_ink(void **state)
 {
     (void)state;
-    glint_canvas canvas;
-    assert_true(glint_canvas_init(&canvas, 30, 20, false));
-    glint_canvas_fill(&canvas, -5, -5, 6, 6, 0x010203); // clipped at the edges
-    glint_canvas_fill(&canvas, 29, 19, 50, 50, 0x040506);
-    glint_canvas_fill(&canvas, 40, 0, 5, 5, 0);
-    assert_memory_equal(canvas.pixels, ((uint8_t[]) { 1, 2, 3, 255 }), 4);
-    assert_memory_equal(canvas.pixels + 3 * (19 * 30 + 29), ((uint8_t[]) { 4, 5, 6 }), 3);
-    // Text rotated by a quarter turn has the same pixels as horizontal text.
-    glint_canvas along, down;
-    assert_true(glint_canvas_init(&along, 20, 13, false) && glint_canvas_init(&down, 13, 20, true));
-    const glint_typeface typeface = glint_typeface_open(NULL, 13);
-    assert_true(glint_canvas_text(&along, &typeface, 0, 0, "Rg", SIZE_MAX, 0));
-    assert_true(glint_canvas_text_down(&down, &typeface, 13, 0, "Rg", 0));
-    int ink = 0;
-    for (int y = 0; y < 13; y++)
-        for (int x = 0; x < 20; x++) {
-            const bool inked = along.pixels[3 * (y * 20 + x)] == 0;
-            assert_int_equal(down.pixels[4 * (x * 13 + 12 - y) + 3], inked ? 255 : 0); // over transparent paper
-            ink += inked;
+    static const double white[3] = { 1, 1, 1 };
+    glint_ink ink;
+    assert_int_equal(glint_ink_open(30, 20, &ink, NULL), GLINT_OK);
+    glint_ink_fill(&ink, -5, -5, 6, 6, white, 1); // clipped at the edges
+    glint_ink_fill(&ink, 29, 19, 50, 50, white, 0.2);
+    glint_ink_fill(&ink, 40, 0, 5, 5, white, 1);
+    assert_int_equal(ink.count, 2);
+    glint_ink_clip(&ink, &(glint_rect) { 10, 10, 3, 3 });
+    glint_ink_fill(&ink, 0, 12, 30, 8, white, 1);
+    const glint_stroke across = { { 0, 10.5 }, { 30, 0 } };
+    glint_ink_strokes(&ink, &(glint_strokes) { .of = (glint_stroke *)&across, .count = 1, .half = 0.5 }, white);
+    uint8_t *pixels = draw_page(&ink, 3);
+    for (int y = 0; y < 20; y++)
+        for (int x = 0; x < 30; x++) {
+            const bool inside = x >= 10 && x < 13 && (y == 10 || y == 12);
+            const int expected = (x == 0 && y == 0) || inside ? 255 : x == 29 && y == 19 ? 51 : 0;
+            assert_int_equal(pixels[3 * (y * 30 + x)], expected);
         }
-    assert_in_range(ink, 20, 80);
-    free(canvas.pixels);
-    free(along.pixels);
-    free(down.pixels);
+    free(pixels);
+    glint_ink_close(&ink);
+}
+
+/// Draws a text of the bitmap font on a transparent page of its size.
+static uint8_t *draw_turned(int width, int height, glint_turn turn)
+{
+    static const double black[3] = { 0, 0, 0 };
+    const glint_typeface typeface = glint_typeface_open(NULL, 13);
+    glint_ink ink;
+    assert_int_equal(glint_ink_open(width, height, &ink, NULL), GLINT_OK);
+    glint_ink_text(&ink, &typeface, "Rg", SIZE_MAX, 0, 0, turn, black);
+    uint8_t *pixels = draw_page(&ink, 4);
+    glint_ink_close(&ink);
+    return pixels;
+}
+
+/// Text rotated by a quarter turn has the same pixels as horizontal text.
+static void test_turned(void **state)
+{
+    (void)state;
+    uint8_t *level = draw_turned(16, 13, GLINT_LEVEL), *down = draw_turned(13, 16, GLINT_DOWN), *up = draw_turned(13, 16, GLINT_UP);
+    int count = 0;
+    for (int y = 0; y < 13; y++)
+        for (int x = 0; x < 16; x++) {
+            const int covered = level[4 * (y * 16 + x) + 3];
+            assert_int_equal(down[4 * (x * 13 + 12 - y) + 3], covered);
+            assert_int_equal(up[4 * ((15 - x) * 13 + y) + 3], covered);
+            count += covered == 255;
+        }
+    assert_in_range(count, 20, 80);
+    free(level);
+    free(down);
+    free(up);
 }
 
 // ---- Sheets -------------------------------------------------------------------------------------------------------
@@ -578,7 +620,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(test_draft),          WITH_FOLDER(test_picture_alpha), WITH_FOLDER(test_picture_linear),
         WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_claims),
-        cmocka_unit_test(test_font),      cmocka_unit_test(test_canvas),
+        cmocka_unit_test(test_font),      cmocka_unit_test(test_ink),
+        cmocka_unit_test(test_turned),
         WITH_FOLDER(test_sheet),          WITH_FOLDER(test_sheet_bar),     WITH_FOLDER(test_sheet_refuses),
         WITH_FOLDER(test_apng),
         WITH_FOLDER(test_apng_refuses),

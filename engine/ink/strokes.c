@@ -1,5 +1,5 @@
 /// Straight strokes with round ends and arrowheads, as one shape with smooth edges.
-#include "engine/overlay/layout.h"
+#include "engine/ink/stamps.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -56,15 +56,15 @@ static double distance_from(const glint_strokes *strokes, size_t i, double x, do
     return distance_to(s->offset, x - s->from[0], y - s->from[1]) - strokes->half;
 }
 
-static void draw_tile(const glint_layout *layout, const glint_strokes *strokes, int left, int top,
-                      const double color[3])
+static void add_tile(glint_stamps *stamps, const glint_ink_mark *mark, int left, int top)
 {
+    const glint_strokes *strokes = &mark->strokes;
     glint_stamp stamp = { .coverage = NULL };
     for (size_t i = 0; i < strokes->count + strokes->has_head; i++) {
         // the shape is farther from the stamp's middle than half the stamp's diagonal
         if (distance_from(strokes, i, left + TILE / 2.0, top + TILE / 2.0) > TILE)
             continue;
-        if (!stamp.coverage && !glint_layout_mask(layout, left, top, TILE, TILE, &stamp))
+        if (!stamp.coverage && !glint_stamps_mask(stamps, &mark->clip, left, top, TILE, TILE, &stamp))
             return;
         for (int y = 0; y < stamp.height; y++)
             for (int x = 0; x < stamp.width; x++) {
@@ -75,7 +75,7 @@ static void draw_tile(const glint_layout *layout, const glint_strokes *strokes, 
             }
     }
     if (stamp.coverage)
-        glint_stamps_add(layout->stamps, stamp, color);
+        glint_stamps_add(stamps, stamp, mark->color);
 }
 
 static void add_to_range(double range[2], double value, double reach)
@@ -84,9 +84,11 @@ static void add_to_range(double range[2], double value, double reach)
     range[1] = fmax(range[1], value + reach);
 }
 
-void glint_layout_strokes(const glint_layout *layout, const glint_strokes *strokes, const double color[3])
+void glint_stamps_strokes(glint_stamps *stamps, const glint_ink_mark *mark)
 {
-    const int sides[2] = { layout->overlays->width, layout->overlays->height };
+    const glint_strokes *strokes = &mark->strokes;
+    const int low[2] = { mark->clip.x, mark->clip.y };
+    const int high[2] = { low[0] + mark->clip.width, low[1] + mark->clip.height };
     int first[2], last[2];
     for (int c = 0; c < 2; c++) {
         double range[2] = { INFINITY, -INFINITY };
@@ -96,18 +98,10 @@ void glint_layout_strokes(const glint_layout *layout, const glint_strokes *strok
         }
         for (int i = 0; i < 3 && strokes->has_head; i++)
             add_to_range(range, strokes->head[i][c], 1);
-        first[c] = (int)fmin(fmax(range[0], 0), sides[c]);
-        last[c] = (int)ceil(fmax(fmin(range[1], sides[c]), 0));
+        first[c] = (int)fmin(fmax(range[0], low[c]), high[c]);
+        last[c] = (int)ceil(fmax(fmin(range[1], high[c]), low[c]));
     }
     for (int y = first[1]; y < last[1]; y += TILE)
         for (int x = first[0]; x < last[0]; x += TILE)
-            draw_tile(layout, strokes, x, y, color);
-    layout->stamps->lost = layout->stamps->lost || strokes->lost;
-}
-
-void glint_layout_line(const glint_layout *layout, const double from[2], const double offset[2], double half,
-                       const double color[3])
-{
-    glint_stroke stroke = { { from[0], from[1] }, { offset[0], offset[1] } };
-    glint_layout_strokes(layout, &(glint_strokes) { .of = &stroke, .count = 1, .half = half }, color);
+            add_tile(stamps, mark, x, y);
 }
