@@ -437,7 +437,7 @@ check-musl-run:
 
 # Only clang has libFuzzer. The kernels are compiled without its counters: other tests cover them.
 FUZZ       := build-fuzz
-FUZZERS    := picture mesh command data scene pattern
+FUZZERS    := picture mesh command data scene pattern formula
 FUZZ_CC    ?= clang
 FUZZ_BIN   := $(FUZZERS:%=$(BUILD)/tests/fuzz/fuzz_%)
 FUZZ_MAKE  := $(MAKE) --no-print-directory BUILD=$(FUZZ) PORTABLE=1 CC="$(FUZZ_CC)" CFLAGS="-O1 -g" \

@@ -8,6 +8,7 @@
 
 #define GLINT_FONT_WIDTH 8 ///< width of every character, pixels
 #define GLINT_FONT_HEIGHT 13
+#define GLINT_FONT_ABOVE 11 ///< the part of the height above the baseline
 
 /// Returns the 13 rows of the glyph of the UTF-8 character at *text, from the top, and moves *text past the
 /// character. The leftmost pixel is the highest bit. The font has Latin-1, Greek and a few signs; other characters

@@ -15,11 +15,13 @@
 #include FT_SYSTEM_H
 #include FT_TRUETYPE_TABLES_H
 
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 
 /// Unhinted outlines, since hinting depends on settings of the library.
 #define LOAD (FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP)
+#define BOLD (1 / 24.0) ///< growth of the strokes of bold letters, in font sizes
 
 struct glint_letters {
     FT_Library library;
@@ -179,17 +181,69 @@ static bool next_letter(glint_letters *letters, const char **text, pen *at)
     return !FT_Load_Glyph(face, glyph, LOAD);
 }
 
-static double advance_of(const glint_letters *letters) { return (double)letters->face->glyph->linearHoriAdvance / 65536; }
+/// Returns the growth of a bold letter's width.
+static double bold_of(const glint_run *run) { return run->bold ? run->em * BOLD : 0; }
+
+static double advance_of(const glint_letters *letters, const glint_run *run)
+{
+    return (double)letters->face->glyph->linearHoriAdvance / 65536 + bold_of(run);
+}
+
+double glint_letters_advance(glint_letters *letters, const glint_run *run)
+{
+    const char *text = run->text, *end = text + strnlen(text, run->size);
+    pen at = { 0 };
+    set_size(letters, run->em);
+    while (text < end && at.x < 0x1p30)
+        if (next_letter(letters, &text, &at))
+            at.x += advance_of(letters, run);
+    return at.x;
+}
 
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size)
 {
-    const char *end = text + strnlen(text, size);
+    return (int)(glint_letters_advance(letters, &(glint_run) { .text = text, .size = size, .em = em, .stretch = 1 }) + 0.999);
+}
+
+/// Returns the outline of the loaded letter in the shape of a run. NULL: the letter has no outline.
+static FT_Outline *shape_letter(const glint_letters *letters, const glint_run *run)
+{
+    FT_Outline *outline = &letters->face->glyph->outline;
+    const FT_Matrix matrix = { 65536, (FT_Fixed)(run->slant * 65536), 0, (FT_Fixed)(run->stretch * 65536) };
+    if (letters->face->glyph->format != FT_GLYPH_FORMAT_OUTLINE || outline->n_points == 0)
+        return NULL;
+    if (run->bold)
+        FT_Outline_Embolden(outline, (FT_Pos)(bold_of(run) * 64));
+    if (run->slant != 0 || run->stretch != 1)
+        FT_Outline_Transform(outline, &matrix);
+    return outline;
+}
+
+glint_run_box glint_letters_box(glint_letters *letters, const glint_run *run)
+{
+    const char *text = run->text, *end = text + strnlen(text, run->size);
+    glint_run_box ink = { 0 };
+    bool has_ink = false;
     pen at = { 0 };
-    set_size(letters, em);
-    while (text < end && at.x < 0x1p30)
-        if (next_letter(letters, &text, &at))
-            at.x += advance_of(letters);
-    return (int)(at.x + 0.999);
+    set_size(letters, run->em);
+    while (text < end && at.x < 0x1p30) {
+        if (!next_letter(letters, &text, &at))
+            continue;
+        FT_Outline *outline = shape_letter(letters, run);
+        FT_BBox box;
+        if (outline) {
+            FT_Outline_Get_CBox(outline, &box);
+            const double left = at.x + (double)box.xMin / 64, right = at.x + (double)box.xMax / 64;
+            const double above = (double)box.yMax / 64, below = -(double)box.yMin / 64;
+            ink.left = has_ink ? fmin(ink.left, left) : left;
+            ink.right = has_ink ? fmax(ink.right, right) : right;
+            ink.above = has_ink ? fmax(ink.above, above) : above;
+            ink.below = has_ink ? fmax(ink.below, below) : below;
+            has_ink = true;
+        }
+        at.x += advance_of(letters, run);
+    }
+    return ink;
 }
 
 /// Adds a rectangle of coverage. The coverages of two letters in a pixel are treated as independent.
@@ -203,14 +257,16 @@ static void add_coverage(const FT_Bitmap *from, int x, int y, glint_mask *mask)
         }
 }
 
-/// Draws the loaded letter, clipped to the mask. The letter begins at x, and its baseline is the upper edge of row y.
-static void draw_letter(glint_letters *letters, double x, int y, glint_mask *mask)
+static FT_Pos to_64ths(double pixels) { return (FT_Pos)(pixels * 64 + (pixels < 0 ? -0.5 : 0.5)); }
+
+/// Draws the loaded letter at x on the baseline of a run, clipped to the mask.
+static void draw_letter(glint_letters *letters, const glint_run *run, double x, glint_mask *mask)
 {
-    FT_Outline *outline = &letters->face->glyph->outline;
+    FT_Outline *outline = shape_letter(letters, run);
     FT_BBox box;
-    if (letters->face->glyph->format != FT_GLYPH_FORMAT_OUTLINE || outline->n_points == 0)
+    if (!outline)
         return;
-    FT_Outline_Translate(outline, (FT_Pos)(x * 64 + (x < 0 ? -0.5 : 0.5)), -(FT_Pos)y * 64); // mask corner at 0, 0
+    FT_Outline_Translate(outline, to_64ths(x), -to_64ths(run->y)); // mask corner at 0, 0
     FT_Outline_Get_CBox(outline, &box);
     const FT_Pos left = box.xMin >> 6 > 0 ? box.xMin >> 6 : 0;
     const FT_Pos right = (box.xMax + 63) >> 6 < mask->width ? (box.xMax + 63) >> 6 : mask->width;
@@ -229,15 +285,15 @@ static void draw_letter(glint_letters *letters, double x, int y, glint_mask *mas
     free(part.buffer);
 }
 
-void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask)
+void glint_letters_draw(glint_letters *letters, const glint_run *run, glint_mask *mask)
 {
-    const char *end = text + strnlen(text, size);
-    pen at = { .x = x };
-    set_size(letters, em);
+    const char *text = run->text, *end = text + strnlen(text, run->size);
+    pen at = { .x = run->x };
+    set_size(letters, run->em);
     while (text < end && at.x < mask->width)
         if (next_letter(letters, &text, &at)) {
-            const double advance = advance_of(letters);
-            draw_letter(letters, at.x, y, mask);
+            const double advance = advance_of(letters, run);
+            draw_letter(letters, run, at.x, mask);
             at.x += advance;
         }
 }
@@ -307,9 +363,21 @@ int glint_letters_width(glint_letters *letters, double em, const char *text, siz
     return 0;
 }
 
-void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask)
+double glint_letters_advance(glint_letters *letters, const glint_run *run)
 {
-    (void)letters, (void)em, (void)text, (void)size, (void)x, (void)y, (void)mask;
+    (void)letters, (void)run;
+    return 0;
+}
+
+glint_run_box glint_letters_box(glint_letters *letters, const glint_run *run)
+{
+    (void)letters, (void)run;
+    return (glint_run_box) { 0 };
+}
+
+void glint_letters_draw(glint_letters *letters, const glint_run *run, glint_mask *mask)
+{
+    (void)letters, (void)run, (void)mask;
 }
 
 const char *glint_letters_library(void) { return NULL; }

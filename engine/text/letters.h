@@ -10,7 +10,29 @@
 #include "engine/glint.h"
 #include "engine/text/mask.h"
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 typedef struct glint_letters glint_letters; ///< an open font; used by one thread at a time
+
+/// A run of letters of one size and shape.
+typedef struct glint_run {
+    const char *text; ///< UTF-8; borrowed
+    size_t size; ///< bytes; the text may end earlier with NUL
+    double x, y; ///< left end of the baseline, from the upper left corner of a mask or the baseline of a line; pixels
+    double em; ///< font size, pixels
+    double slant; ///< pixels to the right for each pixel of height; 0: upright
+    double stretch; ///< factor of the letters' height; 1: none
+    bool bold;
+} glint_run;
+
+/// The rectangle that the letters of a run cover: distances from the left end of the baseline, pixels.
+typedef struct glint_run_box {
+    double left, right; ///< to the right
+    double above; ///< to the top, upwards
+    double below; ///< to the bottom, downwards
+} glint_run_box;
 
 /// *out NULL: the bitmap font. GLINT_ERR_INVALID: GLINT_FONT names a file that is not a font.
 glint_status glint_letters_open(glint_letters **out, glint_error *error);
@@ -30,7 +52,11 @@ void glint_letters_measure(glint_letters *letters, double em, int *above, int *b
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size);
 /// Returns whether the font has a letter.
 bool glint_letters_has(const glint_letters *letters, uint32_t code);
-/// Draws the text into the mask. x: the left end of the text; y: the row just below the baseline.
-void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask);
+/// Returns the width of a run, pixels.
+double glint_letters_advance(glint_letters *letters, const glint_run *run);
+/// Returns the rectangle that a run covers; all zero for a run without visible letters.
+glint_run_box glint_letters_box(glint_letters *letters, const glint_run *run);
+/// Draws a run into the mask, clipped to the mask. The baseline is the upper edge of row y.
+void glint_letters_draw(glint_letters *letters, const glint_run *run, glint_mask *mask);
 
 #endif

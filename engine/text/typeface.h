@@ -19,6 +19,13 @@ glint_typeface glint_typeface_open(glint_letters *letters, double em);
 int glint_typeface_width(const glint_typeface *typeface, const char *text, size_t size);
 /// Returns whether the font has a letter.
 bool glint_typeface_has(const glint_typeface *typeface, uint32_t code);
+/// Returns the width of a run, pixels.
+double glint_typeface_advance(const glint_typeface *typeface, const glint_run *run);
+/// Returns the rectangle that a run covers; all zero for a run without visible letters.
+glint_run_box glint_typeface_box(const glint_typeface *typeface, const glint_run *run);
+/// Draws a run into the mask, clipped to the mask. The bitmap font rounds the size to a multiple of 13 and the position
+/// to pixels, and has no slant.
+void glint_typeface_draw_run(const glint_typeface *typeface, const glint_run *run, glint_mask *mask);
 /// Draws the text into the mask, with its upper left corner at x, y; clipped to the mask.
 void glint_typeface_draw(const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_mask *mask);
 
