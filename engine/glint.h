@@ -1749,7 +1749,12 @@ typedef struct glint_sheet_desc {
     const glint_sheet_cell *cells; ///< row by row
     size_t cell_count; ///< >= 1
     int columns; ///< >= 1
-    const char *title, *across, *down; ///< titles of the sheet, of its columns and of its rows; NULL: none
+    const char *title; ///< title of the sheet; NULL: none
+    const char *across, *down; ///< names of the columns and of the rows, at most 1000 bytes each; NULL: none
+    /// Heads: a text above each column, beside each row, and above each block of `block_rows` rows; NULL: none. The text
+    /// above a column has parts like a label
+    const char *const *column_heads, *const *row_heads, *const *block_heads;
+    int block_rows; ///< >= 1 with `block_heads`
     /// Number of the cell, from 1, that each row is compared with in an extra row below it; 0: no such rows
     size_t difference;
     double gain; ///< factor applied to the differences; > 0

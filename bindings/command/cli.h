@@ -65,7 +65,7 @@ typedef struct cli_options {
     size_t light_count;
     const char *file; ///< the file that reproduce compares
     const char *output; ///< the text of -o; NULL: not given
-    const char *label, *title, *colorbar; ///< for sheet; `title` also for publish; NULL: not given
+    const char *label, *names, *format, *title, *colorbar; ///< for sheet; `title` also for publish; NULL: not given
     const char *controls; ///< parameters that publish shows; NULL: all
     bool shows_source; ///< publish shows the script's source
     bool is_live; ///< --live
@@ -119,7 +119,7 @@ struct cli_option {
     bool repeats; ///< the option may be given several times
     const char *group; ///< heading in --help for this option and those after it
 };
-#define CLI_OPTION_COUNT 69
+#define CLI_OPTION_COUNT 71
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// Returns the placeholder of the option's value in --help, or its choices; "" when it takes no value.

@@ -66,36 +66,66 @@ static bool read_colorbar(const char *text, glint_overlay_desc *bar, char messag
     return true;
 }
 
+// Turns "AXIS=TEXT,..." into lines, owned by the caller; a text without an axis is of every axis. NULL: out of memory.
+static char *make_lines(const char *text, bool has_axis)
+{
+    char *lines = malloc(strlen(text) + 2);
+    if (lines)
+        sprintf(lines, "%s%s", has_axis ? "" : "=", text);
+    for (char *at = lines; at && has_axis && *at; at++)
+        if (*at == ',')
+            *at = '\n';
+    return lines;
+}
+
+static glintL_sheet describe_sheet(const cli_options *options, const glint_overlay_desc *bar, const char *names,
+                                   const char *formats)
+{
+    return (glintL_sheet) {
+        .path = options->output, .label = options->label, .names = names, .formats = formats, .title = options->title,
+        .columns = options->columns, .difference = options->difference, .gain = options->gain, .size = options->label_size,
+        .transparent = options->transparent, .colorbar = options->colorbar ? bar : NULL, .dpi = dpi_of(options),
+        .mixes = options->request.force,
+    };
+}
+
+// Makes the sheet of these files. Returns the exit code; the message says what is wrong.
+static int make_sheet(const cli_options *options, const cli_file_list *list, const glint_overlay_desc *bar,
+                      char message[GLINTL_MESSAGE_SIZE])
+{
+    const char *format = options->format;
+    char *names = options->names ? make_lines(options->names, true) : NULL;
+    char *formats = format ? make_lines(format, strcspn(format, "=") < strcspn(format, "%")) : NULL;
+    glintL_sheet sheet = describe_sheet(options, bar, names, formats);
+    int code = GLINTL_EXIT_FAILED;
+    char *live = options->is_live ? cli_live(options, &options->request, &code, message) : NULL;
+    sheet.files = list->files;
+    sheet.count = list->count;
+    sheet.live = live;
+    if ((options->names && !names) || (format && !formats))
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+    else if (live || !options->is_live)
+        code = glintL_sheet_make(&sheet, message);
+    free(live);
+    free(names);
+    free(formats);
+    return code;
+}
+
 int cli_sheet(const cli_options *options, cli_output *output)
 {
     char message[GLINTL_MESSAGE_SIZE];
     cli_file_list list;
     glint_overlay_desc bar;
     int code = GLINTL_EXIT_USAGE;
-    char *live = NULL;
     if (!options->output)
         return refuse(output, code, "sheet", "expected -o NAME.png or -o NAME.html");
     if (options->is_live && !options->live_script)
         return refuse(output, code, "sheet", "expected --live=SCRIPT with the script of the pictures");
     if (options->colorbar && !read_colorbar(options->colorbar, &bar, message))
         return refuse(output, code, "sheet", message);
-    if (cli_list_files(options, &options->request.selection, &list, message)) {
-        glintL_sheet sheet = { .path = options->output, .files = list.files, .count = list.count };
-        sheet.label = options->label;
-        sheet.title = options->title;
-        sheet.columns = options->columns;
-        sheet.difference = options->difference;
-        sheet.gain = options->gain;
-        sheet.size = options->label_size;
-        sheet.transparent = options->transparent;
-        sheet.colorbar = options->colorbar ? &bar : NULL;
-        sheet.dpi = dpi_of(options);
-        sheet.mixes = options->request.force;
-        sheet.live = live = options->is_live ? cli_live(options, &options->request, &code, message) : NULL;
-        if (live || !options->is_live)
-            code = glintL_sheet_make(&sheet, message);
-    }
-    free(live);
+    if (cli_list_files(options, &options->request.selection, &list, message))
+        code = make_sheet(options, &list, &bar, message);
     if (code)
         refuse(output, code, "sheet", message);
     else

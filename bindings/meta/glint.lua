@@ -892,10 +892,14 @@ function animation:run(options) end
 ---@return glint.animation
 function glint.animation(fields) end
 
---- A contact sheet of a sweep's frames, drawn when all of them are finished: rows of labelled pictures with the names
---- of the axes, as a picture, or as a page with a slider for each axis.
+--- A contact sheet of a sweep's frames, drawn when all of them are finished: a table of pictures, as a picture, or as a
+--- page with a slider for each axis. The values of the first axis are heads above the columns, those of the second beside
+--- the rows; all other axes make blocks.
 ---@class glint.sheet
----@field label? boolean|string|fun(values: table<string, any>, n: integer): string  text under each picture: true: every axis and its value; false: nothing; a template such as "n = {shininess}", which may also contain {file} and {frame}; or a function that returns the text. Default true
+---@field label? boolean|string|fun(values: table<string, any>, n: integer, pass: string): string  true: heads with the values of the axes; false: neither heads nor labels; a text under each picture, such as "n = {shininess}", which may also contain {file} and {frame}; or a function that returns this text. Default true
+---@field names? table<string, string>  names of axes on the sheet, such as { shininess = "n" }, at most 100 bytes each. Default: the axes' own
+---@field format? string|table<string, string>  how numbers are written, such as "%.2f": text with one %f, %e or %g; a table has a format for each axis, such as { shininess = "%.0f" }. Default: up to four digits
+---@field passes? boolean  the passes that the sweep renders are an axis, the first one, after "beauty". Default false
 ---@field columns? integer  pictures per row of a .png, 1 .. 65535. Default: the number of values on the first axis
 ---@field difference? integer  number of a frame of the sweep, from 1: a second row shows the difference of each picture from this frame. Default none
 ---@field gain? number  factor of the differences, 0.001 .. 1e6; with `difference`. Default 8

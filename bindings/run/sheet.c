@@ -27,6 +27,8 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
         snprintf(message, GLINTL_MESSAGE_SIZE, "pictures: 1 .. %d expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
         return false;
     }
+    if (!glintL_sheet_check_names(sheet, message))
+        return false;
     if (sheet->difference > (int64_t)sheet->count)
         snprintf(message, GLINTL_MESSAGE_SIZE, "difference: a picture 1 .. %zu expected, got %lld", sheet->count,
                  (long long)sheet->difference);
@@ -66,16 +68,27 @@ static bool frames_differ(const glintL_axes *axes)
     return axes->cell_count > 1;
 }
 
-// Writes "name value" for every axis, as separate parts; without axes the frame number, otherwise the file name.
+// Writes a cell's values of the axes from `first` to before `end`, with the names or without.
+static void write_values(const glintL_sheet *sheet, const glintL_axes *axes, size_t first, size_t end, size_t cell,
+                         bool named, const char *separator, char out[LABEL_SIZE])
+{
+    char name[GLINTL_AXIS_SIZE] = "", value[GLINTL_AXIS_SIZE];
+    size_t used = 0;
+    out[0] = '\0';
+    for (size_t a = first; a < end && used < LABEL_SIZE; a++) {
+        const glintL_axis *axis = &axes->axis[a];
+        if (named)
+            glintL_axis_title(sheet, axis, name);
+        glintL_axis_spell(sheet, axis, axis->index[cell], value);
+        used += (size_t)snprintf(out + used, LABEL_SIZE - used, "%s%s%s%s", a > first ? separator : "", name,
+                                 named ? " = " : "", value);
+    }
+}
+
+// Writes "name = value" for every axis, as separate parts; without axes the frame number, otherwise the file name.
 static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE])
 {
-    char value[64];
-    size_t used = 0;
-    for (size_t a = 0; a < axes->count && used < LABEL_SIZE; a++) {
-        const glintL_axis *axis = &axes->axis[a];
-        glintL_axis_spell(axis->values[axis->index[cell]], value);
-        used += (size_t)snprintf(out + used, LABEL_SIZE - used, "%s%s = %s", a ? "\n" : "", axis->name, value);
-    }
+    write_values(sheet, axes, 0, axes->count, cell, true, "\n", out);
     if (axes->count == 0 && frames_differ(axes))
         snprintf(out, LABEL_SIZE, "frame %s", frame_of(axes, cell));
     else if (axes->count == 0)
@@ -84,13 +97,13 @@ static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, si
 
 // Returns the value for {name}; NULL: unknown name.
 static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, const char *name,
-                              size_t length, char value[64])
+                              size_t length, char value[GLINTL_AXIS_SIZE])
 {
     for (size_t a = 0; a < axes->count; a++) {
         const glintL_axis *axis = &axes->axis[a];
         if (strlen(axis->name) != length || memcmp(axis->name, name, length) != 0)
             continue;
-        glintL_axis_spell(axis->values[axis->index[cell]], value);
+        glintL_axis_spell(sheet, axis, axis->index[cell], value);
         return value;
     }
     if (length == 4 && memcmp(name, "file", 4) == 0)
@@ -102,7 +115,7 @@ static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes
 static bool fill_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE],
                        char *message)
 {
-    char value[64];
+    char value[GLINTL_AXIS_SIZE];
     size_t used = 0;
     for (const char *at = sheet->label; *at && used < LABEL_SIZE - 1;) {
         const char *end = *at == '{' ? strchr(at, '}') : NULL;
@@ -136,6 +149,28 @@ static void free_list(char **list, size_t count)
     free(list);
 }
 
+// Returns the number of columns: the number of values of a grid's first axis; otherwise the sheet is about square.
+static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
+{
+    if (sheet->columns)
+        return (int)(sheet->columns < (int64_t)sheet->count ? sheet->columns : (int64_t)sheet->count);
+    if (axes->is_grid && (axes->count > 1 || sheet->count <= ROW_MAX))
+        return (int)axes->axis[0].count;
+    return (int)ceil(sqrt((double)sheet->count));
+}
+
+// Returns whether heads name the values of the axes.
+static bool has_heads(const glintL_sheet *sheet, const glintL_axes *axes)
+{
+    return axes->is_grid && !sheet->labels && !sheet->label;
+}
+
+// Returns whether a single axis takes several rows: then each picture has its value below it.
+static bool is_wrapped(const glintL_sheet *sheet, const glintL_axes *axes)
+{
+    return axes->count == 1 && !ends_in(sheet->path, ".html") && (size_t)columns_of(sheet, axes) < axes->axis[0].count;
+}
+
 // Returns the labels of all cells, owned by the caller. NULL: the message says why.
 static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
 {
@@ -147,6 +182,8 @@ static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, ch
         label[0] = '\0';
         if (sheet->labels)
             snprintf(label, sizeof label, "%s", sheet->labels[i]);
+        else if (has_heads(sheet, axes))
+            write_values(sheet, axes, 0, is_wrapped(sheet, axes), i, false, "", label);
         else if (!sheet->label)
             default_label(sheet, axes, i, label);
         else if (strcmp(sheet->label, "none") != 0)
@@ -161,16 +198,6 @@ static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, ch
 }
 
 // ---- The picture ----
-
-// Returns the number of columns: the number of values of a grid's first axis; otherwise the sheet is about square.
-static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
-{
-    if (sheet->columns)
-        return (int)(sheet->columns < (int64_t)sheet->count ? sheet->columns : (int64_t)sheet->count);
-    if (axes->is_grid && (axes->count > 1 || sheet->count <= ROW_MAX))
-        return (int)axes->axis[0].count;
-    return (int)ceil(sqrt((double)sheet->count));
-}
 
 // Returns how many axes of a grid go across: those whose combined values make the columns. A single axis may take
 // several rows. 0: no number of axes fits the columns.
@@ -204,51 +231,134 @@ static bool check_columns(const glintL_sheet *sheet, const glintL_axes *axes, ch
     return false;
 }
 
-static void list_names(const glintL_axes *axes, size_t from, size_t to, char out[256])
+// Lists the names of the axes from `first` to before `end`, owned by the caller. NULL: out of memory.
+static char *list_names(const glintL_sheet *sheet, const glintL_axes *axes, size_t first, size_t end)
 {
+    char *out = calloc(GLINTL_AXES_MAX, GLINTL_AXIS_SIZE + 2);
     size_t used = 0;
-    out[0] = '\0';
-    for (size_t a = from; a < to && used < 256; a++)
-        used += (size_t)snprintf(out + used, 256 - used, "%s%s", a > from ? ", " : "", axes->axis[a].name);
+    for (size_t a = first; a < end && out; a++) {
+        if (a > first)
+            used += (size_t)snprintf(out + used, 3, ", ");
+        glintL_axis_title(sheet, &axes->axis[a], out + used);
+        used += strlen(out + used);
+    }
+    return out;
 }
 
-// Names the columns and rows of a grid.
-static void set_titles(const glintL_axes *axes, glint_sheet_desc *desc, char across[256], char down[256])
+// Returns the heads of `count` columns, rows or blocks, owned by the caller: the values of the axes from `first` to
+// before `end` in every `step`-th cell. NULL: out of memory.
+static char **make_heads(const glintL_sheet *sheet, const glintL_axes *axes, size_t first, size_t end, size_t count,
+                         size_t step, bool named)
 {
-    const size_t count = axes->is_grid ? count_across(axes, (size_t)desc->columns) : 0;
-    if (!count)
-        return;
-    list_names(axes, 0, count, across);
-    list_names(axes, count, axes->count, down);
-    desc->across = across;
-    desc->down = *down ? down : NULL;
+    char text[LABEL_SIZE];
+    char **heads = calloc(count, sizeof *heads);
+    bool good = heads != NULL;
+    for (size_t i = 0; i < count && good; i++) {
+        write_values(sheet, axes, first, end, i * step, named, ", ", text);
+        good = (heads[i] = strdup(text)) != NULL;
+    }
+    if (!good) {
+        free_list(heads, count);
+        heads = NULL;
+    }
+    return heads;
+}
+
+// The texts around a grid, owned.
+typedef struct surround {
+    char *across, *down; // NULL: none
+    char **columns, **rows, **blocks; // NULL: none
+    size_t column_count, row_count, block_count;
+} surround;
+
+static void drop_surround(surround *s)
+{
+    free_list(s->columns, s->column_count);
+    free_list(s->rows, s->row_count);
+    free_list(s->blocks, s->block_count);
+    free(s->across);
+    free(s->down);
+}
+
+// Makes the heads of columns, rows and blocks: `across` axes go across, the next one down, and all others make blocks.
+static bool add_heads(const glintL_sheet *sheet, const glintL_axes *axes, size_t across, surround *out)
+{
+    const size_t down = across < axes->count ? across + 1 : across, cells = axes->cell_count;
+    out->row_count = cells / out->column_count;
+    out->block_count = down > across ? out->row_count / axes->axis[across].count : 0;
+    out->columns = make_heads(sheet, axes, 0, across, out->column_count, 1, false);
+    bool good = out->columns;
+    if (down > across)
+        good = (out->rows = make_heads(sheet, axes, across, down, out->row_count, out->column_count, false)) && good;
+    if (axes->count > down)
+        good = (out->blocks = make_heads(sheet, axes, down, axes->count, out->block_count, cells / out->block_count, true)) && good;
+    return good;
+}
+
+// Makes the texts around a grid. False: out of memory.
+static bool make_surround(const glintL_sheet *sheet, const glintL_axes *axes, surround *out)
+{
+    const size_t columns = (size_t)columns_of(sheet, axes);
+    const size_t across = axes->is_grid ? count_across(axes, columns) : 0;
+    const size_t down = across < axes->count && has_heads(sheet, axes) ? across + 1 : axes->count;
+    *out = (surround) { .column_count = columns };
+    if (!across)
+        return true;
+    bool good = (out->across = list_names(sheet, axes, 0, across)) != NULL;
+    if (across < axes->count)
+        good = (out->down = list_names(sheet, axes, across, down)) && good;
+    if (has_heads(sheet, axes) && !is_wrapped(sheet, axes))
+        good = add_heads(sheet, axes, across, out) && good;
+    return good;
 }
 
 static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char *const *labels, char *message)
 {
-    char across[256], down[256];
+    surround around;
     glint_error error;
+    glint_status status = GLINT_ERR_NOMEM;
     glint_sheet_cell *cells = calloc(sheet->count, sizeof *cells);
-    if (!cells) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-        return GLINTL_EXIT_FAILED;
-    }
-    for (size_t i = 0; i < sheet->count; i++)
+    for (size_t i = 0; i < sheet->count && cells; i++)
         cells[i] = (glint_sheet_cell) { sheet->files[i], labels[i] };
-    glint_sheet_desc desc = { .cells = cells, .cell_count = sheet->count, .title = sheet->title };
-    desc.columns = columns_of(sheet, axes);
-    desc.difference = (size_t)sheet->difference;
-    desc.gain = sheet->gain > 0 ? sheet->gain : DEFAULT_GAIN;
-    desc.size = sheet->size;
-    desc.dpi = sheet->dpi;
-    desc.transparent = sheet->transparent;
-    desc.colorbar = sheet->colorbar;
-    set_titles(axes, &desc, across, down);
-    glint_status status = glint_sheet_write(&desc, sheet->path, &error);
+    snprintf(error.message, sizeof error.message, "out of memory");
+    if (make_surround(sheet, axes, &around) && cells) {
+        const glint_sheet_desc desc = {
+            .cells = cells, .cell_count = sheet->count, .columns = columns_of(sheet, axes), .title = sheet->title,
+            .across = around.across, .down = around.down, .column_heads = (const char *const *)around.columns,
+            .row_heads = (const char *const *)around.rows, .block_heads = (const char *const *)around.blocks,
+            .block_rows = around.blocks ? (int)(around.row_count / around.block_count) : 0,
+            .difference = (size_t)sheet->difference, .gain = sheet->gain > 0 ? sheet->gain : DEFAULT_GAIN, .size = sheet->size,
+            .dpi = sheet->dpi, .transparent = sheet->transparent, .colorbar = sheet->colorbar,
+        };
+        status = glint_sheet_write(&desc, sheet->path, &error);
+    }
+    drop_surround(&around);
     free(cells);
     if (status)
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
     return glintL_run_exit_code(status);
+}
+
+// Returns the names of all axes as "name=" lines, owned by the caller. NULL: out of memory.
+static char *axis_lines(const glintL_axes *axes)
+{
+    size_t size = 1, used = 0;
+    for (size_t a = 0; a < axes->count; a++)
+        size += strlen(axes->axis[a].name) + 2;
+    char *lines = calloc(size, 1);
+    for (size_t a = 0; a < axes->count && lines; a++)
+        used += (size_t)snprintf(lines + used, size - used, "%s=\n", axes->axis[a].name);
+    return lines;
+}
+
+static bool check_known(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
+{
+    char *lines = axis_lines(axes);
+    const bool good = lines && glintL_sheet_check_axes(sheet, lines, message);
+    if (!lines)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+    free(lines);
+    return good;
 }
 
 int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
@@ -258,7 +368,8 @@ int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZ
     if (!glintL_sheet_check(sheet, message))
         return code;
     if (glintL_axes_find(sheet, &axes, &code, message)) {
-        char **labels = check_columns(sheet, &axes, message) ? make_labels(sheet, &axes, message) : NULL;
+        const bool good = check_known(sheet, &axes, message) && check_columns(sheet, &axes, message);
+        char **labels = good ? make_labels(sheet, &axes, message) : NULL;
         code = GLINTL_EXIT_USAGE;
         if (labels)
             code = ends_in(sheet->path, ".html") ? glintL_sheet_page(sheet, &axes, labels, message)

@@ -6,6 +6,9 @@
 
 #define GLINTL_AXES_MAX 16
 #define GLINTL_SHEET_MAX 100000 ///< cells
+#define GLINTL_AXIS_NAME_MAX 100 ///< bytes of a name that a sheet gives an axis
+#define GLINTL_FORMAT_MAX 80 ///< bytes of a format
+#define GLINTL_AXIS_SIZE 512 ///< for the text of one value or name, with its end; holds any number in any format
 
 // ---- sheet.c ----
 
@@ -15,7 +18,9 @@ typedef struct glintL_sheet {
     size_t count;
     char *const *positions; ///< "name=value" lines of each cell, its place on the axes; NULL: read from the file
     char *const *labels; ///< NULL: made from `label`
-    const char *label; ///< with {name} for a value; "none"; NULL: every axis and its value
+    const char *names; ///< "axis=text" lines: names of axes on the sheet; NULL: the axes' own
+    const char *formats; ///< "axis=format" lines, for printf; an empty axis stands for all others; NULL: up to 4 digits
+    const char *label; ///< with {name} for a value; "none"; NULL: heads on a grid, otherwise every axis and its value
     const char *title; ///< NULL: none
     int64_t columns; ///< 0: from the axes
     int64_t difference; ///< the cell, from 1, that the others are compared with; 0: none
@@ -53,8 +58,18 @@ typedef struct glintL_axes {
 /// file is missing, or differs in size or origin; *code is the exit code. The caller drops `out` in any case.
 bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, char message[GLINTL_MESSAGE_SIZE]);
 void glintL_axes_drop(glintL_axes *axes);
-/// Writes a value as in labels: numbers with at most four digits.
-void glintL_axis_spell(const char *value, char out[64]);
+
+// ---- sheet_names.c: names and values as the sheet shows them ----
+
+/// Checks the form of `names` and `formats`. False: the message says what is wrong.
+bool glintL_sheet_check_names(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE]);
+/// Checks that `names` and `formats` are of axes in `axes`, which has "axis=..." lines. False: the message names the
+/// nearest axis.
+bool glintL_sheet_check_axes(const glintL_sheet *sheet, const char *axes, char message[GLINTL_MESSAGE_SIZE]);
+/// Writes the name of an axis for the sheet.
+void glintL_axis_title(const glintL_sheet *sheet, const glintL_axis *axis, char out[GLINTL_AXIS_SIZE]);
+/// Writes value `i` of an axis for the sheet.
+void glintL_axis_spell(const glintL_sheet *sheet, const glintL_axis *axis, size_t i, char out[GLINTL_AXIS_SIZE]);
 
 // ---- sheet_page.c ----
 

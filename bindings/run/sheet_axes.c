@@ -173,13 +173,24 @@ static bool is_grid(const glintL_axes *axes)
     return axes->count > 0 && stride == axes->cell_count;
 }
 
-static void reverse(glintL_axes *axes)
+// Returns the first cell whose value differs from the first cell's.
+static size_t first_change(const glintL_axes *axes, size_t axis)
 {
-    for (size_t i = 0; i < axes->count / 2; i++) {
-        glintL_axis axis = axes->axis[i];
-        axes->axis[i] = axes->axis[axes->count - 1 - i];
-        axes->axis[axes->count - 1 - i] = axis;
-    }
+    size_t cell = 0;
+    while (cell < axes->cell_count && axes->axis[axis].index[cell] == 0)
+        cell++;
+    return cell;
+}
+
+// Sorts the axes so that the one that changes fastest comes first.
+static void sort(glintL_axes *axes)
+{
+    for (size_t i = 1; i < axes->count; i++)
+        for (size_t k = i; k > 0 && first_change(axes, k) < first_change(axes, k - 1); k--) {
+            const glintL_axis axis = axes->axis[k];
+            axes->axis[k] = axes->axis[k - 1];
+            axes->axis[k - 1] = axis;
+        }
 }
 
 bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, char message[GLINTL_MESSAGE_SIZE])
@@ -193,11 +204,13 @@ bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, ch
         return no_memory(message);
     }
     out->is_grid = is_grid(out);
-    if (!out->is_grid) { // in files of nested shell loops the last name changes fastest
-        reverse(out);
+    if (!out->is_grid) { // passes change fastest, and in files of nested shell loops the last name does
+        glintL_axis before[GLINTL_AXES_MAX];
+        memcpy(before, out->axis, sizeof before);
+        sort(out);
         out->is_grid = is_grid(out);
         if (!out->is_grid)
-            reverse(out);
+            memcpy(out->axis, before, sizeof before);
     }
     return true;
 }
@@ -210,14 +223,4 @@ void glintL_axes_drop(glintL_axes *axes)
         glint_picture_destroy(axes->pictures[i]);
     free(axes->pictures);
     memset(axes, 0, sizeof *axes);
-}
-
-void glintL_axis_spell(const char *value, char out[64])
-{
-    char *end;
-    double number = strtod(value, &end);
-    if (end > value && *end == '\0')
-        snprintf(out, 64, number < 1e4 && number > -1e4 ? "%.4g" : "%.6g", number);
-    else
-        snprintf(out, 64, "%.60s", value);
 }

@@ -21,15 +21,16 @@ typedef struct content {
     char *const *labels;
 } content;
 
-static void push_axis(lua_State *L, const glintL_axis *axis)
+static void push_axis(lua_State *L, const glintL_sheet *sheet, const glintL_axis *axis)
 {
-    char spelt[64];
+    char spelt[GLINTL_AXIS_SIZE];
+    glintL_axis_title(sheet, axis, spelt);
     lua_createtable(L, 0, 2);
-    lua_pushstring(L, axis->name);
+    lua_pushstring(L, spelt);
     lua_setfield(L, -2, "name");
     lua_newtable(L);
     for (size_t i = 0; i < axis->count; i++) {
-        glintL_axis_spell(axis->values[i], spelt);
+        glintL_axis_spell(sheet, axis, i, spelt);
         lua_pushstring(L, spelt);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
@@ -56,7 +57,7 @@ static void push_content(lua_State *L, const void *context)
     if (page_content->axes->is_grid) {
         lua_newtable(L);
         for (size_t a = 0; a < page_content->axes->count; a++) {
-            push_axis(L, &page_content->axes->axis[a]);
+            push_axis(L, sheet, &page_content->axes->axis[a]);
             lua_rawseti(L, -2, (lua_Integer)a + 1);
         }
         lua_setfield(L, -2, "axes");

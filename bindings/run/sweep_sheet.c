@@ -1,6 +1,7 @@
 // sweep.sheet: the contact sheet of a sweep, drawn when its frames are written.
 //
-//     sheet = { label = true, columns = 4, difference = 1, gain = 8, title = "...", colorbar = bar, output = "sheet.png" }
+//     sheet = { label = true, names = { shininess = "n" }, format = "%.0f", passes = true, columns = 4, difference = 1,
+//               gain = 8, title = "...", colorbar = bar, output = "sheet.png" }
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,20 @@ static void check_number(lua_State *L, int index, const char *path, double min, 
         glintL_refuse(L, index, path, expected);
 }
 
+// Checks { axis = text }; glintL_sheet_check checks the texts.
+static void check_texts(lua_State *L, int index, const char *path)
+{
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "table { axis = text }");
+    lua_pushnil(L);
+    while (lua_next(L, index)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            glintL_bad_key(L, path, -2);
+        check_text(L, lua_gettop(L), path, "table { axis = text }");
+        lua_pop(L, 1);
+    }
+}
+
 static void check_field(lua_State *L, int index, const char *name)
 {
     char path[48], message[GLINTL_MESSAGE_SIZE];
@@ -43,7 +58,11 @@ static void check_field(lua_State *L, int index, const char *name)
         check_number(L, index, path, 1, 10000, false, "points 1 .. 10000");
     } else if (strcmp(name, "dpi") == 0) {
         check_number(L, index, path, 0, 1e6, false, "number 0 .. 1000000");
-    } else if (strcmp(name, "transparent") == 0) {
+    } else if (strcmp(name, "names") == 0 || (strcmp(name, "format") == 0 && !lua_isstring(L, index))) {
+        check_texts(L, index, path);
+    } else if (strcmp(name, "format") == 0) {
+        check_text(L, index, path, "text");
+    } else if (strcmp(name, "transparent") == 0 || strcmp(name, "passes") == 0) {
         if (!lua_isboolean(L, index))
             glintL_refuse(L, index, path, "boolean");
     } else if (strcmp(name, "colorbar") == 0) {
@@ -61,7 +80,8 @@ static void check_field(lua_State *L, int index, const char *name)
 static const glintL_field FIELDS[] = {
     { .name = "label" }, { .name = "columns" }, { .name = "difference" }, { .name = "gain" },
     { .name = "title" }, { .name = "output" },  { .name = "size" },       { .name = "dpi" },
-    { .name = "transparent" }, { .name = "colorbar" }, { .name = NULL },
+    { .name = "transparent" }, { .name = "colorbar" }, { .name = "names" }, { .name = "format" },
+    { .name = "passes" }, { .name = NULL },
 };
 
 void glintL_list_sheet(lua_State *L)
@@ -90,6 +110,7 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
 // The contents of the sheet. The table `kept` on the stack owns the strings.
 typedef struct lists {
     char **files, **positions, **labels;
+    int64_t passes; // pictures of each frame
 } lists;
 
 static int64_t read_whole(lua_State *L, int sheet, const char *name)
@@ -107,10 +128,33 @@ static const char *read_text(lua_State *L, int sheet, const char *name) // the t
     return text;
 }
 
+// Pushes a field that is a table { axis = text } as "axis=text" lines; a text is of every axis, with an empty name.
+static const char *push_lines(lua_State *L, int sheet, const char *name)
+{
+    lua_pushliteral(L, "");
+    const int lines = lua_gettop(L), type = lua_getfield(L, sheet, name);
+    if (type == LUA_TSTRING) {
+        lua_pushfstring(L, "=%s", lua_tostring(L, -1));
+        lua_replace(L, lines);
+    }
+    if (type == LUA_TTABLE)
+        lua_pushnil(L);
+    while (type == LUA_TTABLE && lua_next(L, lines + 1)) {
+        lua_pushfstring(L, "%s%s=%s\n", lua_tostring(L, lines), lua_tostring(L, -2), lua_tostring(L, -1));
+        lua_replace(L, lines);
+        lua_pop(L, 1);
+    }
+    lua_settop(L, lines);
+    return lua_tostring(L, lines);
+}
+
+// Reads a sheet. Leaves two strings on the stack, which the result borrows.
 static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t count, const char *path)
 {
     glintL_sheet out = { .path = path, .files = l->files, .count = (size_t)count, .positions = l->positions };
     out.labels = l->labels;
+    out.names = push_lines(L, sheet, "names");
+    out.formats = push_lines(L, sheet, "format");
     out.label = read_text(L, sheet, "label");
     out.title = read_text(L, sheet, "title");
     out.columns = read_whole(L, sheet, "columns");
@@ -155,15 +199,19 @@ void glintL_sweep_check_together(lua_State *L, int index)
     if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) != LUA_TNIL &&
         lua_getiuservalue(L, index, GLINTL_JOB_SHEET) == LUA_TTABLE) {
         int sheet = lua_gettop(L);
-        lists none = { NULL, NULL, NULL };
+        lists none = { 0 };
         const char *output = read_text(L, sheet, "output");
         glintL_sheet made = read_sheet(L, sheet, &none, job->frames, output ? output : "sheet.png");
-        if (!glintL_sheet_check(&made, message))
+        glintL_sweep_push_position(L, index, 1);
+        if (lua_getfield(L, sheet, "passes") != LUA_TNIL && lua_toboolean(L, -1))
+            lua_pushfstring(L, "%s\npass=", lua_tostring(L, -2));
+        else
+            lua_pop(L, 1);
+        const char *axes = lua_tostring(L, -1);
+        if (!glintL_sheet_check(&made, message) || !glintL_sheet_check_axes(&made, axes, message))
             glintL_error(L, "sweep.sheet.%s", message);
-        if (lua_getfield(L, sheet, "label") == LUA_TSTRING) {
-            glintL_sweep_push_position(L, index, 1);
-            check_template(L, lua_tostring(L, -2), lua_tostring(L, -1));
-        }
+        if (lua_getfield(L, sheet, "label") == LUA_TSTRING)
+            check_template(L, lua_tostring(L, -1), axes);
     }
     lua_settop(L, top);
 }
@@ -195,13 +243,21 @@ static void number_output(char path[GLINTL_PATH_SIZE], int64_t first)
     snprintf(path + stem, GLINTL_PATH_SIZE - stem, "_%04" PRId64 "%s", first, ending);
 }
 
-// Pushes the result of the label function for frame n: function(values, n), with values[name] = value for each axis.
-static void push_label(lua_State *L, int function, int job, int64_t n)
+typedef struct sheet_call {
+    const glintL_naming *naming;
+    int64_t first;
+    bool partial;
+} sheet_call;
+
+// Pushes the result of the label function for a pass of frame n: function(values, n, pass), with values[name] = value
+// for each axis.
+static void push_label(lua_State *L, int function, int job, int64_t n, const char *pass)
 {
     lua_pushvalue(L, function);
     glintL_sweep_push_values(L, job, n);
     lua_pushinteger(L, n);
-    lua_call(L, 2, 1);
+    lua_pushstring(L, pass);
+    lua_call(L, 3, 1);
     if (lua_type(L, -1) != LUA_TSTRING && lua_type(L, -1) != LUA_TNUMBER)
         glintL_refuse(L, -1, "sweep.sheet.label: the function's result", "string");
 }
@@ -220,38 +276,51 @@ static char **new_list(lua_State *L, int64_t count, int kept)
     return list;
 }
 
-// Returns the first frame without a file, and the last one; 0: all have files.
+// Returns the first cell without a file, and the last one; 0: all have files.
 static int64_t find_missing(const lists *l, int64_t count, int64_t *last)
 {
     int64_t first = 0;
-    for (int64_t n = 1; n <= count; n++) {
-        if (access(l->files[n - 1], R_OK) == 0)
+    for (int64_t cell = 1; cell <= count; cell++) {
+        if (access(l->files[cell - 1], R_OK) == 0)
             continue;
-        first = first ? first : n;
-        *last = n;
+        first = first ? first : cell;
+        *last = cell;
     }
     return first;
 }
 
-static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64_t first, int64_t count, int label,
-                       int kept, lists *out)
+static void fill_cell(lua_State *L, int job, const sheet_call *what, int64_t n, const char *pass, int label, int kept,
+                      size_t cell, lists *out)
 {
     char path[GLINTL_PATH_SIZE];
-    out->files = new_list(L, count, kept);
-    out->positions = new_list(L, count, kept);
-    out->labels = lua_isfunction(L, label) ? new_list(L, count, kept) : NULL;
-    for (int64_t n = 1; n <= count; n++) {
-        if (!glintL_name_file(naming, first + n - 1, "beauty", path))
-            glintL_error(L, "output: the file name '%s...' is too long", path);
-        lua_pushstring(L, path);
-        out->files[n - 1] = keep(L, kept);
-        glintL_sweep_push_position(L, job, n);
-        out->positions[n - 1] = keep(L, kept);
-        if (out->labels) {
-            push_label(L, label, job, n);
-            out->labels[n - 1] = keep(L, kept);
-        }
+    if (!glintL_name_file(what->naming, what->first + n - 1, pass, path))
+        glintL_error(L, "output: the file name '%s...' is too long", path);
+    lua_pushstring(L, path);
+    out->files[cell] = keep(L, kept);
+    glintL_sweep_push_position(L, job, n);
+    out->positions[cell] = keep(L, kept);
+    if (out->labels) {
+        push_label(L, label, job, n, pass);
+        out->labels[cell] = keep(L, kept);
     }
+}
+
+// Fills the lists with the passes in the table at `passes`, which change fastest.
+static void fill_lists(lua_State *L, int job, const sheet_call *what, int64_t frames, int passes, int label, int kept,
+                       lists *out)
+{
+    out->passes = (int64_t)lua_rawlen(L, passes);
+    if (frames > GLINTL_SHEET_MAX / out->passes)
+        glintL_error(L, "sweep.sheet: at most %d pictures expected", GLINTL_SHEET_MAX);
+    out->files = new_list(L, frames * out->passes, kept);
+    out->positions = new_list(L, frames * out->passes, kept);
+    out->labels = lua_isfunction(L, label) ? new_list(L, frames * out->passes, kept) : NULL;
+    for (int64_t n = 1; n <= frames; n++)
+        for (int64_t pass = 1; pass <= out->passes; pass++) {
+            lua_rawgeti(L, passes, pass);
+            fill_cell(L, job, what, n, lua_tostring(L, -1), label, kept, (size_t)((n - 1) * out->passes + pass - 1), out);
+            lua_pop(L, 1);
+        }
 }
 
 static void warn_missing(const glintL_run *run, const char *path, int64_t from, int64_t to)
@@ -263,19 +332,13 @@ static void warn_missing(const glintL_run *run, const char *path, int64_t from, 
                         to);
 }
 
-typedef struct sheet_call {
-    const glintL_naming *naming;
-    int64_t first;
-    bool partial;
-} sheet_call;
-
 // Draws the sheet from the files, when everything else is known.
 static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sheet, const lists *l)
 {
     char message[GLINTL_MESSAGE_SIZE];
     int64_t last = 0, missing = find_missing(l, (int64_t)sheet->count, &last);
     if (missing && what->partial) {
-        warn_missing(run, sheet->path, what->first + missing - 1, what->first + last - 1);
+        warn_missing(run, sheet->path, what->first + (missing - 1) / l->passes, what->first + (last - 1) / l->passes);
         return;
     }
     int code = glintL_sheet_make(sheet, message);
@@ -287,36 +350,50 @@ static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sh
         run->reporter.figure(run->reporter.context, "sheet", sheet->path, (int64_t)sheet->count);
 }
 
-static double dpi_of(glintL_run *run, const glintL_job *job)
+// Pushes the passes on the sheet: the picture, and with `passes` in the sheet those that are rendered.
+static void push_passes(lua_State *L, int sheet, const glintL_render *render)
 {
-    glintL_render render = job->render;
-    glintL_run_apply(run, &render);
-    return render.dpi;
+    const bool has_all = lua_getfield(L, sheet, "passes") != LUA_TNIL && lua_toboolean(L, -1);
+    if (has_all)
+        glintL_render_push(L, glintL_render_find("passes"), render);
+    else
+        lua_newtable(L);
+    for (lua_Integer i = (lua_Integer)lua_rawlen(L, -1); i >= 1; i--) {
+        if (lua_rawgeti(L, -1, i) == LUA_TSTRING && strcmp(lua_tostring(L, -1), "light:*") == 0)
+            glintL_error(L, "sweep.sheet.passes: expected the names of lights in the passes light:NAME, got 'light:*'");
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_pushliteral(L, "beauty");
+    lua_rawseti(L, -2, 1);
+    lua_remove(L, -2);
 }
 
 static int draw_protected(lua_State *L)
 {
     const glintL_job *job = lua_touserdata(L, 1);
     const sheet_call *what = lua_touserdata(L, 2);
+    glintL_run *run = glintL_get_run(L);
+    glintL_render render = job->render;
     char output[GLINTL_PATH_SIZE];
     lists l;
     luaL_checkstack(L, 24, "sheet");
+    glintL_run_apply(run, &render);
     lua_getiuservalue(L, 1, GLINTL_JOB_SHEET); // 3
     lua_getfield(L, 3, "label"); // 4
     lua_newtable(L); // 5
-    fill_lists(L, 1, what->naming, what->first, job->frames, 4, 5, &l);
+    push_passes(L, 3, &render); // 6
+    fill_lists(L, 1, what, job->frames, 6, 4, 5, &l);
     const char *given = read_text(L, 3, "output");
-    glintL_run *run = glintL_get_run(L);
     if (given)
         snprintf(output, sizeof output, "%s", given);
     else
         default_output(what->naming, output);
     if (what->first > 1 && (!given || run->point_count > 1))
         number_output(output, what->first);
-    glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, output);
+    glintL_sheet sheet = read_sheet(L, 3, &l, job->frames * l.passes, output);
     sheet.live = run->live;
     if (sheet.dpi == 0) // uses the dpi of the pictures
-        sheet.dpi = dpi_of(run, job);
+        sheet.dpi = render.dpi;
     if (glintL_written_note(run, "sheet", output, what->first))
         draw(run, what, &sheet, &l);
     return 0;

@@ -1,11 +1,13 @@
 /// Contact sheets: finished pictures in rows, each with its label, on white.
 ///
 ///     title
-///               across ->
-///     d    [ picture ] [ picture ]
-///     o      label       label
-///     w    [difference][difference]    on request
-///     n      label       label
+///                   across ->
+///                 head        head
+///           block
+///     d    [head] [ picture ] [ picture ]
+///     o             label       label
+///     w           [difference][difference]    on request
+///     n             label       label
 ///
 /// A colour bar for all pictures is at the right, or below.
 #include "engine/base/status.h"
@@ -28,6 +30,8 @@
 #define PART_GAP 2 // gap between parts of a label on the same line, in letters
 #define LETTER 8 // width of a letter in 13ths of its size
 #define SIZE 13 // size of labels in pixels, unless the sheet sets it
+#define LONGEST_DIFFERENCE "max 255\n0.0123 %"
+#define AXIS_BYTES 1000 // longest name of the columns or rows
 #define BAR_MOST 20 // longest colour bar if it has no length of its own, in label sizes
 
 /// The sheet's measures, in pixels.
@@ -37,9 +41,12 @@ typedef struct layout {
     glint_ink ink; ///< everything except the pixels of pictures. Owned
     glint_typeface typeface, title; ///< typeface of labels; typeface of the title, which is twice as large
     double unit; ///< pixels in a 13th of the label size
-    int rows;
+    int rows, blocks;
     int column, label; ///< width of a column; height of the label below a picture
-    int left, top; ///< position of the first picture
+    int difference; ///< height of the text below a difference; 0: no differences
+    int column_head, row_head, block_head; ///< height of the heads above columns, width of the heads beside rows, height of
+        ///< the heads above blocks; 0: none
+    int left, top; ///< position of the first picture, without the head of its block
     int band; ///< height of a row of pictures together with its row of differences
     int gap;
     int note_lines; ///< at the bottom
@@ -87,6 +94,17 @@ static int widest_part(const layout *l, const char *label)
     return widest;
 }
 
+/// Returns the width of the widest of `count` texts; NULL: 0.
+static int widest_of(const layout *l, const char *const *texts, int count)
+{
+    int widest = 0;
+    for (int i = 0; i < count && texts; i++) {
+        const int width = widest_part(l, texts[i]);
+        widest = width > widest ? width : widest;
+    }
+    return widest;
+}
+
 static void write_text(layout *l, const glint_typeface *typeface, int x, int y, const char *text, size_t size, glint_turn turn,
                        uint32_t color)
 {
@@ -128,7 +146,22 @@ static int set_label(layout *l, const char *label, int space, bool draws, int x,
 /// Returns the width or height of the grid of pictures.
 static int64_t grid_size(const layout *l, bool across)
 {
-    return across ? (int64_t)l->desc->columns * (l->column + l->gap) - l->gap : (int64_t)l->rows * l->band - l->gap;
+    return across ? (int64_t)l->desc->columns * (l->column + l->gap) - l->gap
+                  : (int64_t)l->rows * l->band + (int64_t)l->blocks * l->block_head - l->gap;
+}
+
+/// Writes "name ->", the title of columns or rows.
+static void write_axis(const char *name, char out[AXIS_BYTES + 8])
+{
+    snprintf(out, AXIS_BYTES + 8, "%s \xe2\x86\x92", name);
+}
+
+/// Returns the width of the title of columns or rows; NULL: 0.
+static int axis_width(const layout *l, const char *name)
+{
+    char text[AXIS_BYTES + 8];
+    write_axis(name ? name : "", text);
+    return name ? text_width(l, text, SIZE_MAX) : 0;
 }
 
 /// Lays out the colour bar, and reserves its space next to the grid, which is measured already.
@@ -153,9 +186,11 @@ static void measure_bar(layout *l)
 static void measure_sheet(layout *l)
 {
     const glint_sheet_desc *desc = l->desc;
-    int64_t least[2] = { 0, 0 };
-    l->sheet_width = (int64_t)l->left + (int64_t)desc->columns * (l->column + l->gap);
-    l->sheet_height = (int64_t)l->top + (int64_t)l->rows * l->band;
+    int64_t least[4] = { 0, 0, l->left + (int64_t)axis_width(l, desc->across) + l->gap,
+                         l->left + (int64_t)widest_of(l, desc->block_heads, l->blocks) + l->gap };
+    const int64_t least_height = l->top + (int64_t)axis_width(l, desc->down) + l->gap;
+    l->sheet_width = (int64_t)l->left + grid_size(l, true) + l->gap;
+    l->sheet_height = (int64_t)l->top + grid_size(l, false) + l->gap;
     if (desc->colorbar)
         measure_bar(l);
     if (desc->title)
@@ -166,19 +201,48 @@ static void measure_sheet(layout *l)
                  desc->difference, desc->gain);
         least[1] = l->left + widest_part(l, l->note) + l->gap;
     }
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 4; i++)
         l->sheet_width = least[i] > l->sheet_width ? least[i] : l->sheet_width;
+    l->sheet_height = least_height > l->sheet_height ? least_height : l->sheet_height;
     if (l->sheet_width <= GLINT_SIDE_MAX)
         l->note_lines = set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, false, 0, 0);
     l->sheet_height += (int64_t)l->note_lines * line_height(l) + (l->note_lines ? l->gap / 2 : 0);
+}
+
+/// Measures the columns, then the labels and heads, which are broken into lines as wide as a column.
+static void measure_labels(layout *l)
+{
+    const glint_sheet_desc *desc = l->desc;
+    const int space = pixels(l, 4);
+    int lines = 0, head_lines = 0;
+    l->column = widest_of(l, desc->column_heads, desc->columns);
+    l->column = l->column > l->width ? l->column : l->width;
+    for (size_t i = 0; i < desc->cell_count; i++) {
+        const int widest = widest_part(l, desc->cells[i].label);
+        l->column = widest > l->column ? widest : l->column;
+    }
+    for (size_t i = 0; i < desc->cell_count; i++) {
+        const int count = set_label(l, desc->cells[i].label, l->column, false, 0, 0);
+        lines = count > lines ? count : lines;
+    }
+    for (int i = 0; i < desc->columns && desc->column_heads; i++) {
+        const int count = set_label(l, desc->column_heads[i], l->column, false, 0, 0);
+        head_lines = count > head_lines ? count : head_lines;
+    }
+    l->label = lines * line_height(l) + (lines ? space : 0);
+    if (desc->difference) {
+        const int count = set_label(l, LONGEST_DIFFERENCE, l->column, false, 0, 0);
+        l->difference = (count > lines ? count : lines) * line_height(l) + space;
+    }
+    l->column_head = head_lines * line_height(l) + (head_lines ? space : 0);
+    l->row_head = desc->row_heads ? widest_of(l, desc->row_heads, l->rows) + l->gap / 2 : 0;
+    l->block_head = desc->block_heads ? line_height(l) + space : 0;
 }
 
 /// Measures a sheet. Its description, the size of a picture and the ink are set.
 static void measure(layout *l)
 {
     const glint_sheet_desc *desc = l->desc;
-    int lines = 0;
-    bool differs = desc->difference > 0;
     const double size = desc->size > 0 ? desc->size * (desc->dpi > 0 ? desc->dpi / 72 : 1)
                                        : SIZE * (l->width >= LARGE_PICTURE ? 2 : 1);
     l->unit = (size < GLINT_SIDE_MAX / 2 ? size : GLINT_SIDE_MAX / 2) / SIZE;
@@ -186,20 +250,12 @@ static void measure(layout *l)
     l->title = glint_typeface_open(l->ink.letters, 2 * SIZE * l->unit);
     l->gap = pixels(l, 12);
     l->rows = (int)((desc->cell_count + (size_t)desc->columns - 1) / (size_t)desc->columns);
-    l->column = l->width;
-    for (size_t i = 0; i < desc->cell_count; i++) {
-        int widest = widest_part(l, desc->cells[i].label);
-        l->column = widest > l->column ? widest : l->column;
-    }
-    for (size_t i = 0; i < desc->cell_count; i++) {
-        int count = set_label(l, desc->cells[i].label, l->column, false, 0, 0);
-        lines = count > lines ? count : lines;
-    }
-    lines = differs && lines < 1 ? 1 : lines;
-    l->label = lines * line_height(l) + (lines ? pixels(l, 4) : 0);
-    l->left = l->gap + (desc->down ? line_height(l) + l->gap / 2 : 0);
-    l->top = l->gap + (desc->title ? l->title.line + l->gap : 0) + (desc->across ? line_height(l) + l->gap / 2 : 0);
-    l->band = (differs ? 2 : 1) * (l->height + l->label + l->gap);
+    l->blocks = desc->block_heads ? (l->rows + desc->block_rows - 1) / desc->block_rows : 0;
+    measure_labels(l);
+    l->left = l->gap + (desc->down ? line_height(l) + l->gap / 2 : 0) + l->row_head;
+    l->top = l->gap + (desc->title ? l->title.line + l->gap : 0) + (desc->across ? line_height(l) + l->gap / 2 : 0) +
+            l->column_head;
+    l->band = l->height + l->label + l->gap + (desc->difference ? l->height + l->difference + l->gap : 0);
     measure_sheet(l);
 }
 
@@ -215,7 +271,7 @@ static void place_cell(const layout *l, size_t i, int *x, int *y)
 {
     int column = (int)(i % (size_t)l->desc->columns), row = (int)(i / (size_t)l->desc->columns);
     *x = l->left + column * (l->column + l->gap) + (l->column - l->width) / 2;
-    *y = l->top + row * l->band;
+    *y = l->top + row * l->band + (l->block_head ? (row / l->desc->block_rows + 1) * l->block_head : 0);
 }
 
 /// Draws |a - b| times the gain below picture `a`, with a text. Both pictures are on the canvas already.
@@ -226,7 +282,7 @@ static void draw_difference(layout *l, canvas *paper, size_t a, size_t b)
     char label[96];
     place_cell(l, a, &ax, &ay);
     place_cell(l, b, &bx, &by);
-    int y = ay + l->band / 2;
+    int y = ay + l->height + l->label + l->gap;
     for (int row = 0; row < l->height; row++) {
         const uint8_t *from = row_at(paper, ax, ay + row), *to = row_at(paper, bx, by + row);
         uint8_t *out = row_at(paper, ax, y + row);
@@ -285,24 +341,45 @@ static void draw_bar(layout *l)
     glint_colorbar_draw_alone(&l->bar, &l->ink, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift));
 }
 
-/// Draws "name ->" centred above the columns, and centred next to the rows.
+/// Draws the heads above columns and blocks, and beside rows.
+static void draw_heads(layout *l)
+{
+    const glint_sheet_desc *desc = l->desc;
+    const int columns = desc->column_heads ? desc->columns : 0;
+    int x, y;
+    for (int i = 0; i < columns; i++) {
+        const int lines = set_label(l, desc->column_heads[i], l->column, false, 0, 0);
+        set_label(l, desc->column_heads[i], l->column, true, l->left + i * (l->column + l->gap),
+                  l->top - pixels(l, 4) - lines * line_height(l));
+    }
+    for (int row = 0; row < l->rows; row++) {
+        place_cell(l, (size_t)row * (size_t)desc->columns, &x, &y);
+        if (desc->row_heads)
+            write_text(l, &l->typeface, l->left - l->gap / 2 - text_width(l, desc->row_heads[row], SIZE_MAX),
+                       y + (l->height - line_height(l)) / 2, desc->row_heads[row], SIZE_MAX, GLINT_LEVEL, TEXT_COLOR);
+        if (desc->block_heads && row % desc->block_rows == 0)
+            write_text(l, &l->typeface, l->left, y - l->block_head, desc->block_heads[row / desc->block_rows],
+                       SIZE_MAX, GLINT_LEVEL, TEXT_COLOR);
+    }
+}
+
+/// Draws the sheet's title, then "name ->" centred above the columns, and centred next to the rows.
 static void draw_titles(layout *l)
 {
     const glint_sheet_desc *desc = l->desc;
-    char text[256];
+    char text[AXIS_BYTES + 8];
     if (desc->title)
         write_text(l, &l->title, l->left, l->gap, desc->title, SIZE_MAX, GLINT_LEVEL, TEXT_COLOR);
     if (desc->across) {
-        int grid = (int)grid_size(l, true);
-        snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->across);
-        write_text(l, &l->typeface, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
-                   l->top - line_height(l) - l->gap / 2, text, SIZE_MAX, GLINT_LEVEL, FAINT_COLOR);
+        const int space = (int)grid_size(l, true) - axis_width(l, desc->across);
+        write_axis(desc->across, text);
+        write_text(l, &l->typeface, l->left + (space > 0 ? space / 2 : 0),
+                   l->top - l->column_head - line_height(l) - l->gap / 2, text, SIZE_MAX, GLINT_LEVEL, FAINT_COLOR);
     }
     if (desc->down) {
-        int grid = (int)grid_size(l, false);
-        snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->down);
-        int y = l->top + (grid - text_width(l, text, SIZE_MAX)) / 2;
-        write_text(l, &l->typeface, l->gap, y > 0 ? y : 0, text, SIZE_MAX, GLINT_DOWN, FAINT_COLOR);
+        const int space = (int)grid_size(l, false) - axis_width(l, desc->down);
+        write_axis(desc->down, text);
+        write_text(l, &l->typeface, l->gap, l->top + (space > 0 ? space / 2 : 0), text, SIZE_MAX, GLINT_DOWN, FAINT_COLOR);
     }
 }
 
@@ -398,6 +475,7 @@ static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
     if (!status && l->desc->difference)
         draw_differences(l, &paper);
     draw_titles(l);
+    draw_heads(l);
     if (l->desc->colorbar)
         draw_bar(l);
     if (!status)
@@ -419,6 +497,14 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
     return status ? glint_fail(error, status, "colorbar.%.400s", wrong.message) : GLINT_OK;
 }
 
+static glint_status check_axis(const char *name, const char *text, glint_error *error)
+{
+    if (!text || strlen(text) <= AXIS_BYTES)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: a name of at most %d bytes expected, got '%.40s...'", name, AXIS_BYTES,
+                      text);
+}
+
 static glint_status check_desc(const glint_sheet_desc *desc, const char *path, glint_error *error)
 {
     glint_file_kind kind;
@@ -437,6 +523,12 @@ static glint_status check_desc(const glint_sheet_desc *desc, const char *path, g
         status = glint_check_range("dpi", desc->dpi, 0, 1e6, "number 0 .. 1000000", error);
     if (!status)
         status = glint_check_range("size", desc->size, 0, 10000, "points 0 .. 10000", error);
+    if (!status)
+        status = check_axis("across", desc->across, error);
+    if (!status)
+        status = check_axis("down", desc->down, error);
+    if (!status && desc->block_heads)
+        status = glint_check_whole("block_rows", desc->block_rows, 1, GLINT_SIDE_MAX, error);
     return status || !desc->colorbar ? status : check_bar(desc->colorbar, error);
 }
 

@@ -106,6 +106,18 @@ exits 0 "columns" sheet grid/000*.png -o columns.png --columns 6
 exits 3 "make another sheet" compare again.png columns.png
 exits 0 "a title and no labels" sheet grid/000*.png -o titled.png --title "Glanz ä" --label none
 exits 0 "labels by a template" sheet grid/000*.png -o label.png --label 'n = {shininess}, {file} {frame}'
+exits 0 "other names and formats" sheet grid/000*.png -o names.png --names shininess=n,specular=ks --format 'shininess=%.0f,specular=%+.2f'
+exits 3 "make another sheet" compare again.png names.png
+exits 0 "a page of them" sheet grid/000*.png -o names.html --names shininess=n --format '%.1f'
+check "has both" grep -q 'name: "n", values: \["1.0", "4.0", "16.0"\]' names.html
+exits 0 "a single row" sheet grid/000[123].png -o row.png
+for wrong in "names shinines=n:names: the sheet has no axis .shinines.; did you mean .shininess." "names n:names: AXIS=TEXT expected, got 'n'" \
+    "names shininess=:names: a name of 1 .. 100 bytes expected, got 0" "names shininess=$(printf '%0101d' 0):names: a name of 1 .. 100 bytes expected, got 101" \
+    'format %d:format: .*such as %.2f' 'format %s:format: .*got .%s.' 'format %n:format:' 'format %f%f:format:' 'format %:format:' 'format x:format:' \
+    'format %*f:format:' 'format %.999f:format:' 'format %lf:format:' 'format specula=%f:format: the sheet has no axis .specula.; did you mean .specular.'; do
+    exits 2 "--${wrong%%:*}" sheet grid/000*.png -o wrong.png --${wrong%%:*}
+    says "--${wrong%%:*}" "${wrong#*:}"
+done
 exits 2 "an unknown name in it" sheet grid/000*.png -o wrong.png --label '{shine}'
 says "and which are known" '\{shininess\} \{specular\}'
 absent "nothing is written then" wrong.png
@@ -163,11 +175,20 @@ says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
     '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: expected together with difference' \
-    '{ output = "x.html", columns = 2 }:columns: not for pages; a page has one column for each value of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
+    '{ output = "x.html", columns = 2 }:columns: not for pages; a page has one column for each value of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' \
+    '{ names = { shinines = "n" } }:names: the sheet has no axis .shinines.; did you mean .shininess.' '{ names = "n" }:names: table' '{ names = { shininess = 5 } }:names: table' \
+    '{ format = "%d" }:format: .*got .%d.' '{ format = { specular = "%s" } }:format: .*got .%s.' '{ format = 3 }:format: text' '{ format = "%f\n%f" }:format: AXIS=TEXT' '{ passes = 1 }:passes: boolean' '{ size = 0 }:size: points' \
     '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: has no effect' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done
+SHEET='{ passes = true, names = { pass = "part" } }' exits 0 "a sheet of the passes" grid.lua --passes diffuse,specular -o 'parts/%04d.png' --json
+prints "has a picture of each" '"event":"sheet","file":"parts/sheet.png","frames":18'
+exits 0 "the same sheet of the files" sheet parts/000?.png parts/000?.diffuse.png parts/000?.specular.png -o by_pass.png --names pass=part
+exits 0 "frame by frame" sheet $(for n in 1 2 3 4 5 6; do echo parts/000$n.png parts/000$n.diffuse.png parts/000$n.specular.png; done) -o by_frame.png --names pass=part
+check "draws the same" "$GLINT" compare by_frame.png parts/sheet.png
+SHEET='{ passes = true }' exits 2 "a sheet of all lights" grid.lua --passes 'light:*' -o 'lights/%04d.png'
+says "names them" "sweep.sheet.passes: expected the names of lights in the passes light:NAME"
 export SHEET='{}'
 rm -r grid
 exits 0 "a part of a sweep" grid.lua -f 1-2

@@ -310,6 +310,45 @@ static void test_sheet(void **state)
     free(png.codes);
 }
 
+/// Heads of columns, rows and blocks move the pictures by their size and have their ink beside them.
+static void test_sheet_heads(void **state)
+{
+    (void)state;
+    static const char *const columns[] = { "1", "22" }, *const rows[] = { "10", "2", "10", "2" }, *const blocks[] = { "b = 3", "b = 4" };
+    const char *path = write_plain("a.png", 50, 30, 0);
+    glint_sheet_cell cells[8];
+    glint_error error;
+    for (int i = 0; i < 8; i++)
+        cells[i] = (glint_sheet_cell) { path, NULL };
+    glint_sheet_desc desc = { .cells = cells, .cell_count = 8, .columns = 2, .column_heads = columns, .row_heads = rows,
+                              .block_heads = blocks, .block_rows = 2 };
+    assert_int_equal(glint_sheet_write(&desc, in_folder("sheet.png"), &error), GLINT_OK);
+    glint_png png = decode_ok(in_folder("sheet.png"));
+    const int left = 12 + 2 * 8 + 6, top = 12 + 15 + 4, block = 15 + 4, band = 30 + 12;
+    assert_int_equal(png.width, left + 2 * (50 + 12));
+    assert_int_equal(png.height, top + 2 * block + 4 * band);
+    for (int row = 0; row < 4; row++) {
+        const int y = top + (row / 2 + 1) * block + row * band;
+        assert_int_equal(code_at(&png, left, y - 1), 255);
+        assert_int_equal(code_at(&png, left, y), 0);
+        assert_int_equal(code_at(&png, left + 62 + 49, y + 29), 0);
+        assert_in_range(ink_in(&png, 12, y, 8, 30), row % 2 ? 0 : 8, row % 2 ? 0 : 40); // "10" is two digits, "2" is at the right
+        assert_in_range(ink_in(&png, 20, y, 8, 30), 8, 40);
+        assert_in_range(ink_in(&png, left, y - block, 5 * 8, 15), row % 2 ? 0 : 20, row % 2 ? 2000 : 120);
+    }
+    assert_in_range(ink_in(&png, left + 21, 12, 8, 15), 5, 40);
+    assert_in_range(ink_in(&png, left + 62 + 17, 12, 16, 15), 10, 80);
+    free(png.codes);
+    desc.block_rows = 0;
+    assert_int_equal(glint_sheet_write(&desc, in_folder("none.png"), &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "block_rows: whole number 1 .. 65535 expected, got 0");
+    char name[1002] = "";
+    memset(name, 'n', 1001);
+    desc = (glint_sheet_desc) { .cells = cells, .cell_count = 1, .columns = 1, .down = name };
+    assert_int_equal(glint_sheet_write(&desc, in_folder("none.png"), &error), GLINT_ERR_INVALID);
+    assert_non_null(strstr(error.message, "down: a name of at most 1000 bytes expected"));
+}
+
 /// A colour bar of 256 pixels shows the table's colours one by one: from bottom to top at the right of the pictures,
 /// or from left to right below them. The pictures stay at the same position as without the bar.
 static void test_sheet_bar(void **state)
@@ -622,7 +661,7 @@ int main(void)
         WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_claims),
         cmocka_unit_test(test_font),      cmocka_unit_test(test_ink),
         cmocka_unit_test(test_turned),
-        WITH_FOLDER(test_sheet),          WITH_FOLDER(test_sheet_bar),     WITH_FOLDER(test_sheet_refuses),
+        WITH_FOLDER(test_sheet),          WITH_FOLDER(test_sheet_heads),  WITH_FOLDER(test_sheet_bar),     WITH_FOLDER(test_sheet_refuses),
         WITH_FOLDER(test_apng),
         WITH_FOLDER(test_apng_refuses),
     };
