@@ -335,6 +335,8 @@ typedef enum glint_field_type {
     GLINT_TYPE_DISTANCE, ///< a double, > 0, followed by a bool and a double[3]: if the bool is true, the point
         ///< replaces the distance. 0 and false: neither is set
     GLINT_TYPE_TRANSFORM, ///< glint_transform
+    GLINT_TYPE_POSE, ///< a rigid map of the world to a camera's axes; `parts` begins with the rows of the fields that
+        ///< it replaces: eye, at, direction and up
     GLINT_TYPE_PROGRAM, ///< a program only
     GLINT_TYPE_TABLE, ///< several fields of the same description, listed in `parts`, that are given together
     GLINT_TYPE_CUSTOM, ///< defined by the caller; no engine table uses it
@@ -353,6 +355,7 @@ typedef struct glint_object_field {
     glint_field_type type; ///< type of the value in the description
     size_t offset; ///< in the description
     size_t set_offset; ///< offset of a bool that says whether the field is set; 0: the field always counts as set
+    size_t unset_offset; ///< offset of a bool that is true while another field is used instead; 0: there is none
     size_t program_offset; ///< offset of a glint_program *; unless NULL, the program replaces the value. 0: there is
         ///< none
     unsigned takes; ///< what may replace a number: bits GLINT_TAKES_...
@@ -380,7 +383,22 @@ typedef enum glint_object_kind {
     GLINT_OBJECT_DISK_LIGHT, ///< likewise
     GLINT_OBJECT_POLYGON_LIGHT, ///< likewise
     GLINT_OBJECT_SPHERE_LIGHT, ///< likewise
-    GLINT_OBJECT_SCENE, ///< of glint_scene_desc
+    GLINT_OBJECT_SCENE, ///< fields of glint_scene_desc
+    GLINT_OBJECT_CAMERA, ///< fields of glint_camera_desc
+    GLINT_OBJECT_SPHERE, ///< the fields of glint_shape_desc that this kind reads; the kind is GLINT_OBJECT_SPHERE + a
+        ///< glint_shape_kind
+    GLINT_OBJECT_PLANE, ///< likewise
+    GLINT_OBJECT_SPHERES, ///< likewise
+    GLINT_OBJECT_MESH, ///< likewise
+    GLINT_OBJECT_BOX, ///< likewise
+    GLINT_OBJECT_DISK, ///< likewise
+    GLINT_OBJECT_CYLINDER, ///< likewise
+    GLINT_OBJECT_CONE, ///< likewise
+    GLINT_OBJECT_TORUS, ///< likewise
+    GLINT_OBJECT_GROUP, ///< likewise
+    GLINT_OBJECT_UNION, ///< likewise
+    GLINT_OBJECT_INTERSECTION, ///< likewise
+    GLINT_OBJECT_DIFFERENCE, ///< likewise
     GLINT_OBJECT_KINDS ///< number of kinds
 } glint_object_kind;
 

@@ -95,15 +95,6 @@ static int evaluate(lua_State *L)
 
 static const luaL_Reg METHODS[] = { { "evaluate", evaluate }, { NULL, NULL } };
 
-// Returns whether the constructor's table, at 1, has the field.
-static bool is_given(lua_State *L, const char *name)
-{
-    lua_pushstring(L, name);
-    bool given = lua_rawget(L, 1) != LUA_TNIL;
-    lua_pop(L, 1);
-    return given;
-}
-
 static void begin(int kind, void *desc)
 {
     (void)kind;
@@ -115,8 +106,8 @@ static void made(lua_State *L, const void *desc)
     const desc_type *d = desc;
     accepted(L, glintL_find_field(glintL_fields_of(&MATERIAL), "diffuse"), d);
     glintL_note_material(L, 2,
-                         (d->model == GLINT_MODEL_PHONG || d->model == GLINT_MODEL_BLINN_PHONG) && is_given(L, "shininess") &&
-                             !is_given(L, "specular"));
+                         (d->model == GLINT_MODEL_PHONG || d->model == GLINT_MODEL_BLINN_PHONG) && glintL_is_given(L, "shininess") &&
+                             !glintL_is_given(L, "specular"));
 }
 
 static const glintL_class CLASS = {

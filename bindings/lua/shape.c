@@ -6,88 +6,10 @@
 
 typedef glint_shape_desc desc_type;
 
-#define AT(member) offsetof(desc_type, member)
-
-static const char *const MATERIAL[] = { GLINTL_MATERIAL };
-
-// clang-format off
-#define EVERY_SHAPE \
-    {.name = "material", .type = GLINT_TYPE_OBJECT, .offset = AT(material), .names = MATERIAL}, \
-    {.name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(transform)}, \
-    {.name = "two_sided", .type = GLINT_TYPE_FLAG, .offset = AT(two_sided)}, \
-    {.name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(name)}
-// clang-format on
-
-static const glintL_field SPHERE_FIELDS[] = {
-    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true, .takes = GLINT_TAKES_VARIABLE },
-    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true, .takes = GLINT_TAKES_VARIABLE },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
-
-static const glintL_field PLANE_FIELDS[] = {
-    { .name = "point", .type = GLINT_TYPE_VECTOR, .offset = AT(point), .required = true, .takes = GLINT_TAKES_VARIABLE },
-    { .name = "normal", .type = GLINT_TYPE_VECTOR, .offset = AT(normal), .required = true, .takes = GLINT_TAKES_VARIABLE },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
-
-static const glintL_field BOX_FIELDS[] = {
-    { .name = "min", .type = GLINT_TYPE_VECTOR, .offset = AT(min), .required = true },
-    { .name = "max", .type = GLINT_TYPE_VECTOR, .offset = AT(max), .required = true },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
-
-static const glintL_field DISK_FIELDS[] = {
-    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true },
-    { .name = "normal", .type = GLINT_TYPE_VECTOR, .offset = AT(normal), .required = true },
-    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
-
-// Fields of cylinders and cones.
-static const glintL_field ROUND_FIELDS[] = {
-    { .name = "base", .type = GLINT_TYPE_VECTOR, .offset = AT(base), .required = true },
-    { .name = "top", .type = GLINT_TYPE_VECTOR, .offset = AT(top), .required = true },
-    { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true },
-    { .name = "capped", .type = GLINT_TYPE_FLAG, .offset = AT(capped) },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
-
-static const glintL_field TORUS_FIELDS[] = {
-    { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true },
-    { .name = "axis", .type = GLINT_TYPE_VECTOR, .offset = AT(axis) },
-    { .name = "major", .type = GLINT_TYPE_NUMBER, .offset = AT(major), .required = true },
-    { .name = "minor", .type = GLINT_TYPE_NUMBER, .offset = AT(minor), .required = true },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
-
-static const glintL_field GROUP_FIELDS[] = {
-    { .name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(transform) },
-    { .name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(name) },
-    { .name = NULL },
-};
-
-static const glintL_field COMBINED_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
-
 static const luaL_Reg GROUP_GETTERS[] = { { "count", glintL_group_count }, { NULL, NULL } };
 static const luaL_Reg GROUP_METHODS[] = { { "add", glintL_group_add },
                                           { "remove", glintL_group_remove },
                                           { NULL, NULL } };
-
-static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
-
-static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
-
-static const glintL_field MESH_FIELDS[] = {
-    { .name = "shading", .type = GLINT_TYPE_CHOICE, .offset = AT(shading), .names = SHADINGS },
-    EVERY_SHAPE,
-    { .name = NULL },
-};
 
 // Pushes the list of materials of glint.spheres { materials = ... } or of a mesh's file; nil for other shapes.
 static void push_kept_list(lua_State *L)
@@ -142,19 +64,19 @@ static const luaL_Reg MANY_GETTERS[] = {
 #define COLLECTION .is_list = true, .getters = GROUP_GETTERS, .methods = GROUP_METHODS
 
 static const glintL_variant VARIANTS[] = {
-    [GLINT_SHAPE_SPHERE] = { .name = "sphere", .fields = SPHERE_FIELDS, .place = "center" },
-    [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
-    [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = MANY_GETTERS },
-    [GLINT_SHAPE_MESH] = { .name = "mesh", .fields = MESH_FIELDS, .getters = MANY_GETTERS },
-    [GLINT_SHAPE_BOX] = { .name = "box", .fields = BOX_FIELDS },
-    [GLINT_SHAPE_DISK] = { .name = "disk", .fields = DISK_FIELDS, .place = "center" },
-    [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .fields = ROUND_FIELDS },
-    [GLINT_SHAPE_CONE] = { .name = "cone", .fields = ROUND_FIELDS },
-    [GLINT_SHAPE_TORUS] = { .name = "torus", .fields = TORUS_FIELDS, .place = "center" },
-    [GLINT_SHAPE_GROUP] = { .name = "group", .fields = GROUP_FIELDS, COLLECTION },
-    [GLINT_SHAPE_UNION] = { .name = "union", .fields = COMBINED_FIELDS, COLLECTION },
-    [GLINT_SHAPE_INTERSECTION] = { .name = "intersection", .fields = COMBINED_FIELDS, COLLECTION },
-    [GLINT_SHAPE_DIFFERENCE] = { .name = "difference", .fields = COMBINED_FIELDS, COLLECTION },
+    [GLINT_SHAPE_SPHERE] = { .name = "sphere", .kind = GLINT_OBJECT_SPHERE, .place = "center" },
+    [GLINT_SHAPE_PLANE] = { .name = "plane", .kind = GLINT_OBJECT_PLANE },
+    [GLINT_SHAPE_SPHERES] = { .name = "spheres", .kind = GLINT_OBJECT_SPHERES, .getters = MANY_GETTERS },
+    [GLINT_SHAPE_MESH] = { .name = "mesh", .kind = GLINT_OBJECT_MESH, .getters = MANY_GETTERS },
+    [GLINT_SHAPE_BOX] = { .name = "box", .kind = GLINT_OBJECT_BOX },
+    [GLINT_SHAPE_DISK] = { .name = "disk", .kind = GLINT_OBJECT_DISK, .place = "center" },
+    [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .kind = GLINT_OBJECT_CYLINDER },
+    [GLINT_SHAPE_CONE] = { .name = "cone", .kind = GLINT_OBJECT_CONE },
+    [GLINT_SHAPE_TORUS] = { .name = "torus", .kind = GLINT_OBJECT_TORUS, .place = "center" },
+    [GLINT_SHAPE_GROUP] = { .name = "group", .kind = GLINT_OBJECT_GROUP, COLLECTION },
+    [GLINT_SHAPE_UNION] = { .name = "union", .kind = GLINT_OBJECT_UNION, COLLECTION },
+    [GLINT_SHAPE_INTERSECTION] = { .name = "intersection", .kind = GLINT_OBJECT_INTERSECTION, COLLECTION },
+    [GLINT_SHAPE_DIFFERENCE] = { .name = "difference", .kind = GLINT_OBJECT_DIFFERENCE, COLLECTION },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }

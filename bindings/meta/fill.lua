@@ -5,10 +5,10 @@ local glint = require "glint"
 
 local function number(x) return ("%.14g"):format(x) end
 
--- Returns a default as text; nil if there is none worth printing.
+-- Returns a default as text; nil if there is none worth printing, or the documentation says so.
 local function default(row)
-  local value = row.default
-  if row.required or value == nil then return nil end
+  local value, doc = row.default, row.doc or ""
+  if row.required or value == nil or doc:find "Default nil" or doc:find "No default" then return nil end
   if type(value) == "userdata" then
     local x, y, z = value:unpack()
     return x == y and y == z and number(x) or ("{%s, %s, %s}"):format(number(x), number(y), number(z))

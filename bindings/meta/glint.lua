@@ -69,12 +69,23 @@ function vector:reflect(n) end
 --- Read from an object it is always a vector.
 ---@alias glint.color glint.vector|number[]|number|string
 
+---@class glint.object
+local any_object = {}
+
+--- Releases the object now instead of when it is collected. Shapes and scenes that use it keep it.
+function any_object:close() end
+
+---@class glint.placed
+---@field x number  the x coordinate of `position` or `center`
+---@field y number  the y coordinate
+---@field z number  the z coordinate
+
 -- ---- Materials ----
 
 ---@class glint.material_fields
 ---@fields material
 
----@class glint.material: glint.material_fields
+---@class glint.material: glint.material_fields, glint.object
 local material = {}
 
 ---@class glint.geometry
@@ -92,9 +103,6 @@ local material = {}
 ---@return glint.reflection
 function material:evaluate(geometry) end
 
---- Releases the object now instead of when it is collected. Shapes and scenes that use it keep it.
-function material:close() end
-
 ---@param fields glint.material_fields
 ---@return glint.material
 function glint.material(fields) end
@@ -105,14 +113,7 @@ function glint.material(fields) end
 ---@class glint.point_light_fields
 ---@fields point_light
 
----@class glint.point_light: glint.point_light_fields
----@field x number  the x coordinate of position
----@field y number  the y coordinate of position
----@field z number  the z coordinate of position
-local point_light = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function point_light:close() end
+---@class glint.point_light: glint.point_light_fields, glint.object, glint.placed
 
 ---@param fields glint.point_light_fields
 ---@return glint.point_light
@@ -121,11 +122,7 @@ function glint.point_light(fields) end
 ---@class glint.directional_light_fields
 ---@fields directional_light
 
----@class glint.directional_light: glint.directional_light_fields
-local directional_light = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function directional_light:close() end
+---@class glint.directional_light: glint.directional_light_fields, glint.object
 
 ---@param fields glint.directional_light_fields
 ---@return glint.directional_light
@@ -134,14 +131,7 @@ function glint.directional_light(fields) end
 ---@class glint.spot_light_fields
 ---@fields spot_light
 
----@class glint.spot_light: glint.spot_light_fields
----@field x number  the x coordinate of position
----@field y number  the y coordinate of position
----@field z number  the z coordinate of position
-local spot_light = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function spot_light:close() end
+---@class glint.spot_light: glint.spot_light_fields, glint.object, glint.placed
 
 ---@param fields glint.spot_light_fields
 ---@return glint.spot_light
@@ -152,14 +142,7 @@ function glint.spot_light(fields) end
 ---@class glint.disk_light_fields
 ---@fields disk_light
 
----@class glint.disk_light: glint.disk_light_fields
----@field x number  the x coordinate of position
----@field y number  the y coordinate of position
----@field z number  the z coordinate of position
-local disk_light = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function disk_light:close() end
+---@class glint.disk_light: glint.disk_light_fields, glint.object, glint.placed
 
 ---@param fields glint.disk_light_fields
 ---@return glint.disk_light
@@ -168,11 +151,7 @@ function glint.disk_light(fields) end
 ---@class glint.polygon_light_fields
 ---@fields polygon_light
 
----@class glint.polygon_light: glint.polygon_light_fields
-local polygon_light = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function polygon_light:close() end
+---@class glint.polygon_light: glint.polygon_light_fields, glint.object
 
 ---@param fields glint.polygon_light_fields
 ---@return glint.polygon_light
@@ -181,14 +160,7 @@ function glint.polygon_light(fields) end
 ---@class glint.sphere_light_fields
 ---@fields sphere_light
 
----@class glint.sphere_light: glint.sphere_light_fields
----@field x number  the x coordinate of position
----@field y number  the y coordinate of position
----@field z number  the z coordinate of position
-local sphere_light = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function sphere_light:close() end
+---@class glint.sphere_light: glint.sphere_light_fields, glint.object, glint.placed
 
 ---@param fields glint.sphere_light_fields
 ---@return glint.sphere_light
@@ -197,30 +169,9 @@ function glint.sphere_light(fields) end
 -- ---- Camera ----
 
 ---@class glint.camera_fields
----@field eye? glint.vec3  world units; required without `matrix`
----@field at? glint.vec3  a point to look at; different from `eye`. Give either `at` or `direction`; the last assignment counts
----@field direction? glint.vec3  a direction to look in; not zero. nil while `at` is used
----@field up? glint.vec3  not zero; if parallel to the view, replaced by the world axis least aligned with the view. Default {0, 1, 0}
----@field fov? number  vertical field of view of a perspective camera, degrees, between 0 and 180. Default 40
----@field matrix? number[][]  instead of eye, direction and up: R and t of OpenCV, 3 or 4 rows of four numbers. They map a world point to x right, y down, z away from the eye; R is a rotation
----@field fx? number  horizontal focal length in pixels, > 0, instead of `fov`; the last assignment counts. Default 0: from `fov`
----@field fy? number  vertical focal length in pixels. Default 0: fx
----@field cx? number  column of the principal point, pixels from the left edge, where the first pixel's centre is at 0.5 (OpenCV's own count has it at 0: add 0.5). Default nil: the middle
----@field cy? number  row of the principal point, pixels from the upper edge. Default nil: the middle
----@field w? number  width of the picture that fx, fy, cx and cy are for, pixels; for other sizes they are scaled. Default 0: never scaled
----@field h? number  height of that picture; given together with `w`
----@field projection? "perspective"|"orthographic"  Default "perspective"
----@field height? number  vertical extent of an orthographic camera, world units, > 0. Default 10
----@field pixel_offset? number  position of a single sample within its pixel, 0 .. 1. Default 0.5, the centre
----@field shutter? number  time that the shutter is open, as a share of the time from one frame to the next, 0 .. 1. An animation's frame function is then called for several times around the frame's own, and the picture's light is their mean. Default 0, an instant
----@field shutter_times? integer  number of times for `shutter`, 1 .. 1024. Default 8
----@field aperture? number  radius of the lens, world units, >= 0. Default 0, a pinhole: everything is sharp
----@field focus? number|glint.vec3  the plane in focus: its distance along the view, > 0, or a point on it in front of the eye. nil: `at`
----@field blades? integer  0: a round lens; 3 .. 64: a regular polygon inscribed in the lens's circle, with a corner at the top. Default 0
----@field blade_rotation? number  turns the polygon, counter-clockwise as the eye sees it, degrees. Default 0
----@field name? string  for messages, at most 63 bytes. Default ""
+---@fields camera
 
----@class glint.camera: glint.camera_fields
+---@class glint.camera: glint.camera_fields, glint.object
 local camera = {}
 
 --- Returns where a picture of width x height pixels shows a point, even if it is hidden: x and y in pixels from the
@@ -232,9 +183,6 @@ local camera = {}
 ---@return number? x, number? y, number? depth
 function camera:project(point, width, height) end
 
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function camera:close() end
-
 ---@param fields glint.camera_fields
 ---@return glint.camera
 function glint.camera(fields) end
@@ -242,13 +190,9 @@ function glint.camera(fields) end
 -- ---- Shapes ----
 
 ---@class glint.shape_fields
----@field material? glint.material  Default: a new material with default fields; for a part of a combined solid, the material of the solid
----@field transform? glint.transform  maps the described shape to its place in the world; nil: no change
----@field two_sided? boolean  true: the normal is turned to the viewer; false: the back gets only ambient light. Default true
----@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
+---@fields spheres
 
 ---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group|glint.union|glint.intersection|glint.difference
-
 
 --- An affine map, immutable. `a * b` applies b first, then a. Maps are equal when all their numbers are.
 ---@class glint.transform
@@ -281,32 +225,19 @@ function glint.matrix(numbers) end
 ---@alias glint.light glint.point_light|glint.directional_light|glint.spot_light|glint.area_light
 ---@alias glint.area_light glint.disk_light|glint.polygon_light|glint.sphere_light
 
----@class glint.sphere_fields: glint.shape_fields
----@field center glint.vec3  world units
----@field radius number  world units, > 0; a frame needs a radius >= 1e-150, also relative to the distance from the eye
+---@class glint.sphere_fields
+---@fields sphere
 
----@class glint.sphere: glint.sphere_fields
----@field x number  the x coordinate of center
----@field y number  the y coordinate of center
----@field z number  the z coordinate of center
-local sphere = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function sphere:close() end
+---@class glint.sphere: glint.sphere_fields, glint.object, glint.placed
 
 ---@param fields glint.sphere_fields
 ---@return glint.sphere
 function glint.sphere(fields) end
 
----@class glint.plane_fields: glint.shape_fields
----@field point glint.vec3  any point on the plane, world units
----@field normal glint.vec3  not zero, need not be unit
+---@class glint.plane_fields
+---@fields plane
 
----@class glint.plane: glint.plane_fields
-local plane = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function plane:close() end
+---@class glint.plane: glint.plane_fields, glint.object
 
 ---@param fields glint.plane_fields
 ---@return glint.plane
@@ -319,15 +250,11 @@ function glint.plane(fields) end
 ---@field materials? glint.material[]  instead of `material`, with `index`
 ---@field index? integer[]|string  which of `materials` each sphere has, from 1: a table, or packed u32 numbers
 
----@class glint.spheres: glint.shape_fields
+---@class glint.spheres: glint.shape_fields, glint.object
 ---@field count integer  number of spheres; read-only
 ---@field materials glint.material[]  a new list of the materials; read-only
 ---@field min glint.vector  the corner of the smallest coordinates of the box around the spheres, before the transform; read-only
 ---@field max glint.vector  the corner of the largest coordinates; read-only
-local spheres = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function spheres:close() end
 
 ---@param fields glint.spheres_fields
 ---@return glint.spheres
@@ -352,16 +279,12 @@ function glint.spheres(fields) end
 ---@field index? integer[]|string  which of `materials` each face has, from 1: a table, or packed u32 numbers
 ---@field shading? glint.shading  Default "phong" with normals, else "faceted"
 
----@class glint.mesh: glint.shape_fields
+---@class glint.mesh: glint.shape_fields, glint.object
 ---@field shading glint.shading
 ---@field count integer  number of triangles; read-only
 ---@field materials glint.material[]  all materials; for a mesh from a file, the materials that its faces use. The list is read-only, but the fields of its materials can be set
 ---@field min glint.vector  the corner of the smallest coordinates of the box around the vertices, before the transform; read-only
 ---@field max glint.vector  the corner of the largest coordinates; read-only
-local mesh = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function mesh:close() end
 
 ---@param fields glint.mesh_fields
 ---@return glint.mesh
@@ -378,99 +301,59 @@ function glint.mesh(fields) end
 ---@return glint.mesh
 function glint.sphere_mesh(fields) end
 
----@class glint.box_fields: glint.shape_fields
----@field min glint.vec3  the corner of the smallest coordinates
----@field max glint.vec3  the corner of the largest coordinates, each greater than in `min`
+---@class glint.box_fields
+---@fields box
 
----@class glint.box: glint.box_fields
-local box = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function box:close() end
+---@class glint.box: glint.box_fields, glint.object
 
 ---@param fields glint.box_fields
 ---@return glint.box
 function glint.box(fields) end
 
----@class glint.disk_fields: glint.shape_fields
----@field center glint.vec3  world units
----@field normal glint.vec3  not zero, need not be unit
----@field radius number  world units, > 0
+---@class glint.disk_fields
+---@fields disk
 
----@class glint.disk: glint.disk_fields
----@field x number  the x coordinate of center
----@field y number  the y coordinate of center
----@field z number  the z coordinate of center
-local disk = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function disk:close() end
+---@class glint.disk: glint.disk_fields, glint.object, glint.placed
 
 ---@param fields glint.disk_fields
 ---@return glint.disk
 function glint.disk(fields) end
 
----@class glint.cylinder_fields: glint.shape_fields
----@field base glint.vec3  the middle of one end
----@field top glint.vec3  the middle of the other end; different from `base`
----@field radius number  world units, > 0
----@field capped? boolean  closed at both ends; false: only the side surface, which is also visible from inside. Default true
+---@class glint.cylinder_fields
+---@fields cylinder
 
----@class glint.cylinder: glint.cylinder_fields
-local cylinder = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function cylinder:close() end
+---@class glint.cylinder: glint.cylinder_fields, glint.object
 
 ---@param fields glint.cylinder_fields
 ---@return glint.cylinder
 function glint.cylinder(fields) end
 
----@class glint.cone_fields: glint.shape_fields
----@field base glint.vec3  the middle of the base
----@field top glint.vec3  the apex; different from `base`
----@field radius number  radius of the base, world units, > 0
----@field capped? boolean  closed at its base; false: only the side surface, which is also visible from inside. Default true
+---@class glint.cone_fields
+---@fields cone
 
----@class glint.cone: glint.cone_fields
-local cone = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function cone:close() end
+---@class glint.cone: glint.cone_fields, glint.object
 
 ---@param fields glint.cone_fields
 ---@return glint.cone
 function glint.cone(fields) end
 
----@class glint.torus_fields: glint.shape_fields
----@field center glint.vec3
----@field axis? glint.vec3  the axis of rotation, not zero. Default { 0, 1, 0 }
----@field major number  radius of the circle in the middle of its tube, world units, > 0
----@field minor number  radius of the tube, > 0 and less than major, so that the tube does not intersect itself
+---@class glint.torus_fields
+---@fields torus
 
----@class glint.torus: glint.torus_fields
----@field x number  the x coordinate of center
----@field y number  the y coordinate of center
----@field z number  the z coordinate of center
-local torus = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function torus:close() end
+---@class glint.torus: glint.torus_fields, glint.object, glint.placed
 
 ---@param fields glint.torus_fields
 ---@return glint.torus
 function glint.torus(fields) end
 
 ---@class glint.group_fields
----@field transform? glint.transform  applied to everything in the group; nil: none
----@field name? string  at most 63 bytes. Default ""
+---@fields group
 ---@field [integer] glint.shape  the shapes and groups in the group
 
 --- Shapes under one transform. A shape or group may be in several groups and scenes. It appears in each, and changes
 --- to it apply everywhere. Groups nest at most 64 deep. A group cannot contain itself.
----@class glint.group
----@field transform glint.transform
----@field name string  at most 63 bytes
+---@class glint.group: glint.object
+---@fields group
 ---@field count integer  number of shapes and groups in the group; read-only
 local group = {}
 
@@ -482,9 +365,6 @@ function group:add(shape) end
 ---@param shape glint.shape
 function group:remove(shape) end
 
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function group:close() end
-
 ---@param fields glint.group_fields
 ---@return glint.group
 function glint.group(fields) end
@@ -492,24 +372,23 @@ function glint.group(fields) end
 ---@class glint.combined_fields: glint.shape_fields
 ---@field [integer] glint.shape  the parts: spheres, boxes, capped cylinders and cones, tori, planes, closed meshes, combined solids and groups of these
 
---- Everything inside any of its 1 .. 64 parts, as one solid (a torus counts twice, a closed mesh four times). A plane
---- is the half-space behind it; a group is everything inside its shapes. A part shows only on the boundary of the
---- solid, with its own material or, without one, the solid's. That defaults to the first material among the parts; its
---- `ior` and `absorption` apply inside. The solid is one object. `two_sided` of parts has no effect.
----@class glint.union: glint.combined_fields
+---@class glint.combined: glint.combined_fields, glint.object
 ---@field count integer  number of the given parts; read-only
-local union = {}
+local combined = {}
 
 --- Adds a part and returns it.
 ---@param shape glint.shape
 ---@return glint.shape
-function union:add(shape) end
+function combined:add(shape) end
 
 ---@param shape glint.shape
-function union:remove(shape) end
+function combined:remove(shape) end
 
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function union:close() end
+--- Everything inside any of its 1 .. 64 parts, as one solid (a torus counts twice, a closed mesh four times). A plane
+--- is the half-space behind it; a group is everything inside its shapes. A part shows only on the boundary of the
+--- solid, with its own material or, without one, the solid's. That defaults to the first material among the parts; its
+--- `ior` and `absorption` apply inside. The solid is one object. `two_sided` of parts has no effect.
+---@class glint.union: glint.combined
 
 ---@param fields glint.combined_fields
 ---@return glint.union
@@ -517,20 +396,7 @@ function glint.union(fields) end
 
 --- Everything inside all parts.
 --- See glint.union for parts, their materials and the inside.
----@class glint.intersection: glint.combined_fields
----@field count integer  number of the given parts; read-only
-local intersection = {}
-
---- Adds a part and returns it.
----@param shape glint.shape
----@return glint.shape
-function intersection:add(shape) end
-
----@param shape glint.shape
-function intersection:remove(shape) end
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function intersection:close() end
+---@class glint.intersection: glint.combined
 
 ---@param fields glint.combined_fields
 ---@return glint.intersection
@@ -538,20 +404,7 @@ function glint.intersection(fields) end
 
 --- Everything inside the first part and outside the others. If another part ends exactly at a face of the first part,
 --- the solid is open at that face. See glint.union for parts, their materials and the inside.
----@class glint.difference: glint.combined_fields
----@field count integer  number of the given parts; read-only
-local difference = {}
-
---- Adds a part and returns it.
----@param shape glint.shape
----@return glint.shape
-function difference:add(shape) end
-
----@param shape glint.shape
-function difference:remove(shape) end
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function difference:close() end
+---@class glint.difference: glint.combined
 
 ---@param fields glint.combined_fields
 ---@return glint.difference
@@ -576,11 +429,7 @@ function glint.difference(fields) end
 ---@field at_point? glint.vec3  a point in the world next to which the label is drawn, instead of `at`; `margin` is the distance from the point. Default nil
 
 --- A text over the picture. A label set in frame(t) changes the picture's key, but nothing is rendered again for it.
----@class glint.label: glint.label_fields
-local label = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function label:close() end
+---@class glint.label: glint.label_fields, glint.object
 
 ---@param fields glint.label_fields
 ---@return glint.label
@@ -596,11 +445,7 @@ function glint.label(fields) end
 ---@field orientation? "vertical"|"horizontal"  Default "vertical", low at the bottom
 ---@field length? number  length of the bar, points. Default nil: 10 times `size`
 
----@class glint.colorbar: glint.colorbar_fields
-local colorbar = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function colorbar:close() end
+---@class glint.colorbar: glint.colorbar_fields, glint.object
 
 ---@param fields glint.colorbar_fields
 ---@return glint.colorbar
@@ -614,11 +459,7 @@ function glint.colorbar(fields) end
 
 --- The directions x (red), y (green) and z (blue) in the camera's view. With a `box`: three edges of its visible
 --- outline, with ticks, round numbers and names; none for a direction along the view.
----@class glint.axes: glint.axes_fields
-local axes = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function axes:close() end
+---@class glint.axes: glint.axes_fields, glint.object
 
 ---@param fields glint.axes_fields
 ---@return glint.axes
@@ -640,22 +481,14 @@ function glint.axes(fields) end
 ---@field to glint.vec3  end point in the world
 
 --- An arrow between two points of the world, drawn over the picture, with its label beyond its tip.
----@class glint.arrow: glint.line_fields
-local arrow = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function arrow:close() end
+---@class glint.arrow: glint.line_fields, glint.object
 
 ---@param fields glint.line_fields
 ---@return glint.arrow
 function glint.arrow(fields) end
 
 --- A line between two points of the world, drawn over the picture, with its label next to its middle.
----@class glint.line: glint.line_fields
-local line = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function line:close() end
+---@class glint.line: glint.line_fields, glint.object
 
 ---@param fields glint.line_fields
 ---@return glint.line
@@ -668,11 +501,7 @@ function glint.line(fields) end
 ---@field radius? number  world units. Default nil: a twelfth of the picture's height
 
 --- The angle between two directions at a point, drawn over the picture as part of a circle.
----@class glint.arc: glint.arc_fields
-local arc = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function arc:close() end
+---@class glint.arc: glint.arc_fields, glint.object
 
 ---@param fields glint.arc_fields
 ---@return glint.arc

@@ -328,6 +328,14 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
     lua_pop(L, 2);
 }
 
+bool glintL_is_given(lua_State *L, const char *name)
+{
+    lua_pushstring(L, name);
+    bool given = lua_rawget(L, 1) != LUA_TNIL;
+    lua_pop(L, 1);
+    return given;
+}
+
 // Makes an object. Upvalues: the class, the variant, its number.
 static int new_object(lua_State *L)
 {

@@ -208,6 +208,8 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         }
         refuse_source(L, index, full, field->type == GLINT_TYPE_CHOICE);
     }
+    if (lua_isnil(L, index) && field->unset_offset && base[field->unset_offset])
+        return;
     if (field->set_offset && !field->required && lua_isnil(L, index)) {
         set = false;
         memcpy(base + field->set_offset, &set, sizeof set);
@@ -255,6 +257,9 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     case GLINT_TYPE_TRANSFORM:
         read_transform(L, index, full, out);
         break;
+    case GLINT_TYPE_POSE:
+        glintL_read_pose(L, index, full, field->parts, desc);
+        break;
     case GLINT_TYPE_TABLE:
         read_nested(L, index, full, field, desc);
         break;
@@ -270,6 +275,8 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     }
     if (field->set_offset)
         memcpy(base + field->set_offset, &set, sizeof set);
+    if (field->unset_offset)
+        base[field->unset_offset] = false;
 }
 
 // ---- One value out ----
@@ -364,7 +371,7 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
     unsigned value;
     void *object;
     luaL_checkstack(L, 4, "field");
-    if (field->set_offset && !*(const bool *)(const void *)(base + field->set_offset)) {
+    if ((field->set_offset && !base[field->set_offset]) || (field->unset_offset && base[field->unset_offset])) {
         lua_pushnil(L);
         return;
     }
@@ -403,6 +410,9 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
         break;
     case GLINT_TYPE_TRANSFORM:
         glintL_push_transform(L, in);
+        break;
+    case GLINT_TYPE_POSE:
+        glintL_push_pose(L, field->parts, desc);
         break;
     case GLINT_TYPE_TABLE:
         push_nested(L, field, desc);

@@ -157,6 +157,12 @@ void glintL_push_transform(lua_State *L, const glint_transform *t);
 /// Returns NULL if the value at index is not a transform.
 const glint_transform *glintL_to_transform(lua_State *L, int index);
 
+// ---- pose.c: a camera's matrix. `parts` are the rows of eye, at, direction and up ----
+
+void glintL_read_pose(lua_State *L, int index, const char *path, const glintL_field *parts, void *desc);
+/// Pushes nil if the view is along `up`.
+void glintL_push_pose(lua_State *L, const glintL_field *parts, const void *desc);
+
 // ---- Patterns as values: bindings/pattern is a layer above, and registers its functions when the module opens ----
 
 typedef struct glintL_tracing {
@@ -320,6 +326,8 @@ void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 void glintL_open_class(lua_State *L, const glintL_class *type);
 /// Makes the metatable of a class, and adds the constructors of its variants to the table on top of the stack.
 void glintL_open_objects(lua_State *L, const glintL_class *type, const glintL_variant *variants, int count);
+/// Returns whether the constructor's table, at 1, has the field.
+bool glintL_is_given(lua_State *L, const char *name);
 /// Lists a kind of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
 /// `methods` may be NULL.
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);

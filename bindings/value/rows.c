@@ -37,7 +37,8 @@ static void push_row(lua_State *L, const glintL_field *field)
 {
     // The editors' type for each glint_field_type; "" for choices, whose names are listed instead.
     static const char *const types[] = { "number", "integer", "number", "boolean", "glint.vec3", "glint.vec3", "glint.color", "", "string",
-                                         "", "glint.vec3[]", "number|glint.vec3", "glint.transform", "", "table", "any", "any" };
+                                         "", "glint.vec3[]", "number|glint.vec3", "glint.transform", "number[][]", "", "table",
+                                         "any", "any" };
     static const char *const takers[] = { "glint.pattern", "glint.texture", "glint.shader" };
     luaL_Buffer type;
     luaL_buffinit(L, &type);
@@ -65,7 +66,7 @@ static void push_row(lua_State *L, const glintL_field *field)
     lua_setfield(L, -2, "required");
     push_default(L, field);
     lua_setfield(L, -2, "default");
-    if (field->parts)
+    if (field->type == GLINT_TYPE_TABLE)
         push_rows(L, field->parts);
     else
         lua_pushnil(L);

@@ -1,6 +1,8 @@
 #include "engine/scene/fields.h"
 #include "engine/base/status.h"
+#include "engine/scene/objects.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -44,10 +46,11 @@ static glint_status check_choice(const glint_object_field *f, unsigned value, gl
     return value < count ? GLINT_OK : glint_fail(error, GLINT_ERR_INVALID, "%s: no such %s", f->name, f->name);
 }
 
-/// Returns whether a field of a description is set: it has no flag, or its flag is true.
+/// Returns whether a field of a description is set, by its flags.
 static bool is_given(const glint_object_field *f, const void *desc)
 {
-    return !f->set_offset || *((const bool *)desc + f->set_offset);
+    const bool *flags = desc;
+    return (!f->set_offset || flags[f->set_offset]) && !(f->unset_offset && flags[f->unset_offset]);
 }
 
 static glint_status check(const glint_object_field *f, const char *desc, glint_error *error);
@@ -77,6 +80,8 @@ static glint_status check(const glint_object_field *f, const char *desc, glint_e
     case GLINT_TYPE_NUMBER:
         return f->expected ? glint_check_range(f->name, *v, f->low, f->high, f->expected, error) : GLINT_OK;
     case GLINT_TYPE_WHOLE:
+        if (f->expected && !(*v >= f->low && *v <= f->high && *v == floor(*v)))
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: %s expected, got %.15g", f->name, f->expected, *v);
         return glint_check_whole(f->name, *v, f->low, f->high, error);
     case GLINT_TYPE_ANGLE:
         if (!f->expected || (*v >= f->low && *v <= f->high))
@@ -88,6 +93,8 @@ static glint_status check(const glint_object_field *f, const char *desc, glint_e
         return glint_check_direction(f->name, v, error);
     case GLINT_TYPE_COLOR:
         return check_color(f, v, error);
+    case GLINT_TYPE_TRANSFORM:
+        return glint_check_transform(f->name, (const glint_transform *)(const void *)at, error);
     case GLINT_TYPE_TABLE:
         return check_parts(f, desc, error);
     case GLINT_TYPE_CHOICE:

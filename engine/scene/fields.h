@@ -9,7 +9,9 @@
 /// The tables of fields, one per object, each defined in the object's file.
 extern const glint_object_field glint_material_fields[];
 extern const glint_object_field glint_scene_fields[];
+extern const glint_object_field glint_camera_fields[];
 extern const glint_object_field *const glint_light_fields[]; ///< of each glint_light_kind
+extern const glint_object_field *const glint_shape_fields[]; ///< of each glint_shape_kind
 
 /// The first members of a table row: a field of the type DESC, which the file defines, and the last part of its
 /// GLINT_TYPE_ name.
@@ -23,8 +25,8 @@ extern const glint_object_field *const glint_light_fields[]; ///< of each glint_
 /// Writes the defaults of the fields into a description.
 void glint_fields_reset(const glint_object_field *fields, void *desc);
 /// Checks the fields that are set, in the order of the table; the message names the first field that is wrong. The
-/// caller checks the rest: numbers and angles without `expected`, and all types except numbers, vectors, colours and
-/// choices.
+/// caller checks the rest: numbers and angles without `expected`, and all types except numbers, vectors, colours,
+/// choices and transforms.
 glint_status glint_fields_check(const glint_object_field *fields, const void *desc, glint_error *error);
 /// Returns how many numbers a field has: 3, 1 or 0.
 int glint_field_numbers(const glint_object_field *field);

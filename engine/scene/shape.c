@@ -1,5 +1,6 @@
 #include "engine/base/hash.h"
 #include "engine/base/status.h"
+#include "engine/scene/fields.h"
 #include "engine/scene/objects.h"
 
 #include <math.h>
@@ -10,83 +11,143 @@
 
 #define MAX_SPHERES ((size_t)1 << 30)
 
+// ---- The tables of fields ----
+
+typedef glint_shape_desc DESC;
+
+static const char *const material_kind[] = { "glint.material", NULL };
+static const char *const shadings[] = { "faceted", "phong", "flat", "gouraud", NULL };
+
+#define SLOPES .takes = GLINT_TAKES_VARIABLE
+#define POINT(field, ...) { GLINT_ROW(field, VECTOR), .required = true, .unit = "world units", __VA_ARGS__ }
+#define NORMAL(...) \
+    { GLINT_ROW(normal, DIRECTION), .required = true, .initial = { 0, 1, 0 }, .doc = "not zero, need not be unit", __VA_ARGS__ }
+#define RADIUS(...) { GLINT_ROW(radius, NUMBER), .required = true, GLINT_ABOVE_0, .initial = { 1 }, .unit = "world units", __VA_ARGS__ }
+#define CAPPED(ends) \
+    { GLINT_ROW(capped, FLAG), .initial = { true }, \
+      .doc = "closed at " ends "; false: only the side surface, which is also visible from inside" }
+#define PLACED(doc_of_name) \
+    { GLINT_ROW(transform, TRANSFORM), .doc = "maps the described shape to its place in the world; nil: no change" }, \
+    { GLINT_ROW(name, TEXT), .doc = doc_of_name }
+
+// clang-format off
+#define EVERY_SHAPE \
+    { GLINT_ROW(material, OBJECT), .names = material_kind, \
+      .doc = "Default: a new material with default fields; for a part of a combined solid, the material of the solid" }, \
+    { GLINT_ROW(two_sided, FLAG), .initial = { true }, \
+      .doc = "true: the normal is turned to the viewer; false: the back gets only ambient light" }, \
+    PLACED("for messages and `glint explain`, at most 63 bytes"), \
+    { .name = NULL }
+
+static const glint_object_field sphere_fields[] = {
+    POINT(center, SLOPES, .doc = "the centre"),
+    RADIUS(SLOPES, .doc = "> 0; a frame needs a radius >= 1e-150, also relative to the distance from the eye"),
+    EVERY_SHAPE,
+};
+
+static const glint_object_field plane_fields[] = {
+    POINT(point, SLOPES, .doc = "any point on the plane"),
+    NORMAL(SLOPES),
+    EVERY_SHAPE,
+};
+
+static const glint_object_field box_fields[] = {
+    POINT(min, .initial = { -1, -1, -1 }, .doc = "the corner of the smallest coordinates"),
+    POINT(max, .initial = { 1, 1, 1 }, .doc = "the corner of the largest coordinates, each greater than in `min`"),
+    EVERY_SHAPE,
+};
+
+static const glint_object_field disk_fields[] = {
+    POINT(center, .doc = "the centre"), NORMAL(), RADIUS(.doc = "> 0"), EVERY_SHAPE,
+};
+
+static const glint_object_field cylinder_fields[] = {
+    POINT(base, .doc = "the middle of one end"),
+    POINT(top, .initial = { 0, 1, 0 }, .doc = "the middle of the other end; different from `base`"),
+    RADIUS(.doc = "> 0"),
+    CAPPED("both ends"),
+    EVERY_SHAPE,
+};
+
+static const glint_object_field cone_fields[] = {
+    POINT(base, .doc = "the middle of the base"),
+    POINT(top, .initial = { 0, 1, 0 }, .doc = "the apex; different from `base`"),
+    RADIUS(.doc = "radius of the base, > 0"),
+    CAPPED("its base"),
+    EVERY_SHAPE,
+};
+
+static const glint_object_field torus_fields[] = {
+    POINT(center, .doc = "the centre"),
+    { GLINT_ROW(axis, DIRECTION), .initial = { 0, 1, 0 }, .doc = "the axis of rotation, not zero" },
+    { GLINT_ROW(major, NUMBER), .required = true, GLINT_ABOVE_0, .initial = { 1 }, .unit = "world units",
+      .doc = "radius of the circle in the middle of its tube, > 0" },
+    { GLINT_ROW(minor, NUMBER), .required = true, .high = DBL_MAX, .initial = { 0.25 }, .unit = "world units",
+      .doc = "radius of the tube, > 0 and less than major, so that the tube does not intersect itself" },
+    EVERY_SHAPE,
+};
+
+static const glint_object_field mesh_fields[] = {
+    { GLINT_ROW(shading, CHOICE), .names = shadings, .doc = "where the light is computed" },
+    EVERY_SHAPE,
+};
+
+static const glint_object_field group_fields[] = { PLACED("at most 63 bytes"), { .name = NULL } };
+
+static const glint_object_field other_fields[] = { EVERY_SHAPE };
+// clang-format on
+
+const glint_object_field *const glint_shape_fields[] = {
+    [GLINT_SHAPE_SPHERE] = sphere_fields,      [GLINT_SHAPE_PLANE] = plane_fields,
+    [GLINT_SHAPE_SPHERES] = other_fields,      [GLINT_SHAPE_MESH] = mesh_fields,
+    [GLINT_SHAPE_BOX] = box_fields,            [GLINT_SHAPE_DISK] = disk_fields,
+    [GLINT_SHAPE_CYLINDER] = cylinder_fields,  [GLINT_SHAPE_CONE] = cone_fields,
+    [GLINT_SHAPE_TORUS] = torus_fields,        [GLINT_SHAPE_GROUP] = group_fields,
+    [GLINT_SHAPE_UNION] = other_fields,        [GLINT_SHAPE_INTERSECTION] = other_fields,
+    [GLINT_SHAPE_DIFFERENCE] = other_fields,
+};
+
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
 {
-    return (glint_shape_desc) { .kind = kind,
-                                .transform = glint_transform_identity(),
-                                .two_sided = true,
-                                .capped = true,
-                                .radius = 1,
-                                .normal = { 0, 1, 0 },
-                                .min = { -1, -1, -1 },
-                                .max = { 1, 1, 1 },
-                                .top = { 0, 1, 0 },
-                                .axis = { 0, 1, 0 },
-                                .major = 1,
-                                .minor = 0.25 };
+    glint_shape_desc desc = { .kind = kind, .transform = glint_transform_identity() };
+    for (int k = GLINT_SHAPE_SPHERE; k <= GLINT_SHAPE_DIFFERENCE; k++)
+        glint_fields_reset(glint_shape_fields[k], &desc);
+    return desc;
 }
 
-static glint_status check_radius(const glint_shape_desc *desc, glint_error *error)
-{
-    if (desc->radius > 0 && isfinite(desc->radius))
-        return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
-}
+// ---- Checks of several fields ----
 
 static glint_status check_box(const glint_shape_desc *desc, glint_error *error)
 {
-    glint_status status = glint_check_vector("min", desc->min, error);
-    if (!status)
-        status = glint_check_vector("max", desc->max, error);
-    for (int c = 0; c < 3 && !status; c++)
+    for (int c = 0; c < 3; c++)
         if (!(desc->min[c] < desc->max[c]))
-            status = glint_fail(error, GLINT_ERR_INVALID, "max: %c above that of min (%.15g) expected, got %.15g",
-                                "xyz"[c], desc -> min[c], desc -> max[c]);
-    return status;
+            return glint_fail(error, GLINT_ERR_INVALID, "max: %c above that of min (%.15g) expected, got %.15g", "xyz"[c],
+                              desc->min[c], desc->max[c]);
+    return GLINT_OK;
 }
 
 static glint_status check_ends(const glint_shape_desc *desc, glint_error *error)
 {
-    glint_status status = glint_check_vector("base", desc->base, error);
-    if (!status)
-        status = glint_check_vector("top", desc->top, error);
-    if (!status)
-        status = check_radius(desc, error);
-    if (!status && memcmp(desc->base, desc->top, sizeof desc->base) == 0)
-        status =
-            glint_fail(error, GLINT_ERR_INVALID, "top: a point other than base expected, got {%.15g, %.15g, %.15g}",
-                       desc->top[0], desc->top[1], desc->top[2]);
-    return status;
+    if (memcmp(desc->base, desc->top, sizeof desc->base) != 0)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "top: a point other than base expected, got {%.15g, %.15g, %.15g}",
+                      desc->top[0], desc->top[1], desc->top[2]);
 }
 
 static glint_status check_torus(const glint_shape_desc *desc, glint_error *error)
 {
-    glint_status status = glint_check_vector("center", desc->center, error);
-    if (!status)
-        status = glint_check_direction("axis", desc->axis, error);
-    if (!status && !(desc->major > 0 && isfinite(desc->major)))
-        status = glint_fail(error, GLINT_ERR_INVALID, "major: number > 0 expected, got %.15g", desc->major);
-    if (!status && !(desc->minor > 0 && desc->minor < desc->major))
-        status = glint_fail(error, GLINT_ERR_INVALID, "minor: number > 0 and below major (%.15g) expected, got %.15g",
-                            desc->major, desc->minor);
-    return status;
+    if (desc->minor > 0 && desc->minor < desc->major)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "minor: number > 0 and below major (%.15g) expected, got %.15g",
+                      desc->major, desc->minor);
 }
 
-static glint_status check_fields(const glint_shape_desc *desc, glint_error *error)
+static glint_status check(const glint_shape_desc *desc, glint_error *error)
 {
-    glint_status status = GLINT_OK;
+    const glint_status status = glint_fields_check(glint_shape_fields[desc->kind], desc, error);
+    if (status)
+        return status;
     switch (desc->kind) {
-    case GLINT_SHAPE_SPHERE:
-        status = glint_check_vector("center", desc->center, error);
-        return status ? status : check_radius(desc, error);
-    case GLINT_SHAPE_DISK:
-        status = glint_check_vector("center", desc->center, error);
-        if (!status)
-            status = check_radius(desc, error);
-        return status ? status : glint_check_direction("normal", desc->normal, error);
-    case GLINT_SHAPE_PLANE:
-        status = glint_check_vector("point", desc->point, error);
-        return status ? status : glint_check_direction("normal", desc->normal, error);
     case GLINT_SHAPE_BOX:
         return check_box(desc, error);
     case GLINT_SHAPE_CYLINDER:
@@ -94,18 +155,12 @@ static glint_status check_fields(const glint_shape_desc *desc, glint_error *erro
         return check_ends(desc, error);
     case GLINT_SHAPE_TORUS:
         return check_torus(desc, error);
-    case GLINT_SHAPE_MESH:
-        return glint_check_shading(desc->shading, error);
     default:
         return GLINT_OK;
     }
 }
 
-static glint_status check(const glint_shape_desc *desc, glint_error *error)
-{
-    glint_status status = glint_check_transform("transform", &desc->transform, error);
-    return status ? status : check_fields(desc, error);
-}
+// ---- Revisions ----
 
 static atomic_uint_least64_t last_revision;
 

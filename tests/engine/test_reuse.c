@@ -75,22 +75,44 @@ typedef struct field {
 #member, offsetof(type, member), sizeof(((type *)0)->member), kind, low, high \
     }
 
-#define ROWS_MAX 64
-static field material_fields[ROWS_MAX], light_fields[ROWS_MAX];
-static size_t material_count, light_count;
+#define COUNT(fields) (sizeof(fields) / sizeof *(fields))
 
-static void add_field(field *list, size_t *count, field f)
+typedef struct table {
+    field of[64];
+    size_t count;
+} table;
+
+static table material_table, light_table, camera_table, shape_table, scene_table;
+
+/// The ranges of members for which the range chosen from the engine's table rarely makes a picture that shows something.
+static const struct {
+    const char *member;
+    double low, high;
+} ranges[] = {
+    { "eye", -2, 8 },           { "at", -1, 1 },           { "fx", 10, 60 },         { "fy", 10, 60 },
+    { "cx", -20, 90 },          { "cy", -20, 90 },         { "w", 20, 90 },          { "h", 20, 90 },
+    { "height", 1, 10 },        { "aperture", 0, 0.4 },    { "focus", 0, 12 },       { "blades", 0, 7 },
+    { "blade_rotation_rad", 0, 6 }, { "center", -3, 3 },   { "point", -3, 3 },       { "min", -3, -1 },
+    { "max", -0.5, 2 },         { "base", -2, 2 },         { "top", -2, 2 },         { "depth_cue_near", 0, 6 },
+    { "depth_cue_far", 4, 15 }, { "indirect_samples", 1, 3 }, { "indirect_bounces", 0, 3 },
+    { "ambient_occlusion_samples", 1, 3 }, { "ambient_occlusion_distance", 0.5, 6 },
+};
+
+static void add_field(table *to, field f)
 {
-    for (size_t i = 0; i < *count; i++)
-        if (list[i].offset == f.offset)
+    for (size_t i = 0; i < to->count; i++)
+        if (to->of[i].offset == f.offset)
             return;
-    assert_true(*count < ROWS_MAX);
-    list[(*count)++] = f;
+    assert_true(to->count < COUNT(to->of));
+    for (size_t i = 0; i < COUNT(ranges); i++)
+        if (strcmp(ranges[i].member, f.name) == 0)
+            f.low = ranges[i].low, f.high = ranges[i].high;
+    to->of[to->count++] = f;
 }
 
-/// Adds each field of an object's table once, with the field's has_ flag and program. Numbers without a narrow range
-/// go up to four times the default.
-static void add_rows(glint_object_kind object, field *list, size_t *count)
+/// Adds each field of an object's rows once, with the field's flags and program. Numbers without a narrow range go up
+/// to four times the default.
+static void add_rows(const glint_object_field *rows, table *to)
 {
     static const struct {
         enum kind kind;
@@ -101,8 +123,10 @@ static void add_rows(glint_object_kind object, field *list, size_t *count)
         [GLINT_TYPE_FLAG] = { FLAG, 1, 0, 1 },          [GLINT_TYPE_VECTOR] = { VECTOR, 24, -6, 6 },
         [GLINT_TYPE_DIRECTION] = { VECTOR, 24, -1, 1 }, [GLINT_TYPE_COLOR] = { COLOR, 24, 0, 1 }, [GLINT_TYPE_CHOICE] = { CHOICE, 4, 0, 0 },
         [GLINT_TYPE_TEXT] = { FIXED, 64, 0, 0 },        [GLINT_TYPE_POINTS] = { FIXED, 16, 0, 0 },
+        [GLINT_TYPE_OBJECT] = { FIXED, 8, 0, 0 },       [GLINT_TYPE_DISTANCE] = { NUMBER, 8, 0, 0 },
+        [GLINT_TYPE_TRANSFORM] = { TRANSFORM, 96, 0, 0 },
     };
-    for (const glint_object_field *f = glint_object_fields(object, NULL); f->name; f++) {
+    for (const glint_object_field *f = rows; f->name; f++) {
         double low = of[f->type].low, high = of[f->type].high;
         for (int i = 0; f->type == GLINT_TYPE_CHOICE && f->names[i]; i++)
             high = i + 1;
@@ -113,63 +137,34 @@ static void add_rows(glint_object_kind object, field *list, size_t *count)
             high = fmin(f->high, f->type == GLINT_TYPE_WHOLE ? 20 : f->initial[0] > 0 ? 4 * f->initial[0] : 9);
         }
         if (f->member)
-            add_field(list, count, (field) { f->name, f->offset, of[f->type].size, of[f->type].kind, low, high });
+            add_field(to, (field) { f->member, f->offset, of[f->type].size, of[f->type].kind, low, high });
+        if (f->type == GLINT_TYPE_DISTANCE) {
+            add_field(to, (field) { "", f->offset + 8, 1, FLAG, 0, 1 });
+            add_field(to, (field) { "", f->offset + 16, 24, VECTOR, -1, 1 });
+        }
         if (f->set_offset)
-            add_field(list, count, (field) { f->name, f->set_offset, 1, FLAG, 0, 1 });
+            add_field(to, (field) { "", f->set_offset, 1, FLAG, 0, 1 });
         if (f->program_offset)
-            add_field(list, count, (field) { f->name, f->program_offset, sizeof(void *), FIXED, 0, 0 });
+            add_field(to, (field) { "", f->program_offset, sizeof(void *), to == &scene_table ? SKY : FIXED, 0, 0 });
+        if (f->type == GLINT_TYPE_TABLE)
+            add_rows(f->parts, to);
     }
 }
 
 static int make_tables(void **unused)
 {
     (void)unused;
-    add_rows(GLINT_OBJECT_MATERIAL, material_fields, &material_count);
-    add_field(light_fields, &light_count, (field) FIELD(glint_light_desc, kind, FIXED, 0, 0));
-    for (int k = GLINT_LIGHT_POINT; k <= GLINT_LIGHT_SPHERE; k++)
-        add_rows((glint_object_kind)(GLINT_OBJECT_POINT_LIGHT + k), light_fields, &light_count);
+    add_rows(glint_object_fields(GLINT_OBJECT_MATERIAL, NULL), &material_table);
+    add_rows(glint_object_fields(GLINT_OBJECT_CAMERA, NULL), &camera_table);
+    add_rows(glint_object_fields(GLINT_OBJECT_SCENE, NULL), &scene_table);
+    add_field(&light_table, (field) FIELD(glint_light_desc, kind, FIXED, 0, 0));
+    for (int k = GLINT_OBJECT_POINT_LIGHT; k <= GLINT_OBJECT_SPHERE_LIGHT; k++)
+        add_rows(glint_object_fields((glint_object_kind)k, NULL), &light_table);
+    add_field(&shape_table, (field) FIELD(glint_shape_desc, kind, FIXED, 0, 0));
+    for (int k = GLINT_OBJECT_SPHERE; k <= GLINT_OBJECT_DIFFERENCE; k++)
+        add_rows(glint_object_fields((glint_object_kind)k, NULL), &shape_table);
     return 0;
 }
-
-static const field camera_fields[] = {
-#define C(...) FIELD(glint_camera_desc, __VA_ARGS__)
-    C(projection, CHOICE, 0, 2),   C(eye, VECTOR, -2, 8), C(has_direction, FLAG, 0, 1), C(at, VECTOR, -1, 1),
-    C(direction, VECTOR, -1, 1),   C(up, VECTOR, -1, 1),  C(fov_y_rad, NUMBER, 0.3, 2), C(height, NUMBER, 1, 10),
-    C(fx, NUMBER, 10, 60), C(fy, NUMBER, 10, 60), C(has_cx, FLAG, 0, 1), C(has_cy, FLAG, 0, 1), C(cx, NUMBER, -20, 90),
-    C(cy, NUMBER, -20, 90), C(w, NUMBER, 20, 90), C(h, NUMBER, 20, 90),
-    C(pixel_offset, NUMBER, 0, 1), C(shutter, FIXED, 0, 0), C(shutter_times, FIXED, 0, 0),
-    C(aperture, NUMBER, 0, 0.4), C(focus, NUMBER, 0, 12), C(has_focus_point, FLAG, 0, 1),
-    C(focus_point, VECTOR, -1, 1), C(blades, WHOLE, 0, 7), C(blade_rotation_rad, NUMBER, 0, 6), C(name, FIXED, 0, 0),
-#undef C
-};
-
-static const field shape_fields[] = {
-#define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
-    S(kind, FIXED, 0, 0),          S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
-    S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 4),
-    S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1),   S(max, VECTOR, -0.5, 2),  S(base, VECTOR, -2, 2),
-    S(top, VECTOR, -2, 2),         S(capped, FLAG, 0, 1),    S(name, FIXED, 0, 0),     S(axis, VECTOR, -1, 1),
-    S(major, NUMBER, 0.6, 2),      S(minor, NUMBER, 0.05, 0.5),
-#undef S
-};
-
-static const field scene_fields[] = {
-    FIELD(glint_scene_desc, camera, FIXED, 0, 0),
-    FIELD(glint_scene_desc, ambient, COLOR, 0, 1),
-    FIELD(glint_scene_desc, background, COLOR, 0, 1),
-    FIELD(glint_scene_desc, background_program, SKY, 0, 0),
-    FIELD(glint_scene_desc, has_depth_cue, FLAG, 0, 1),
-    FIELD(glint_scene_desc, has_depth_cue_color, FLAG, 0, 1),
-    FIELD(glint_scene_desc, depth_cue_color, COLOR, 0, 1),
-    FIELD(glint_scene_desc, depth_cue_near, NUMBER, 0, 6),
-    FIELD(glint_scene_desc, depth_cue_far, NUMBER, 4, 15),
-    FIELD(glint_scene_desc, has_indirect, FLAG, 0, 1),
-    FIELD(glint_scene_desc, indirect_samples, WHOLE, 1, 3),
-    FIELD(glint_scene_desc, indirect_bounces, WHOLE, 0, 3),
-    FIELD(glint_scene_desc, has_ambient_occlusion, FLAG, 0, 1),
-    FIELD(glint_scene_desc, ambient_occlusion_samples, WHOLE, 1, 3),
-    FIELD(glint_scene_desc, ambient_occlusion_distance, NUMBER, 0.5, 6),
-};
 
 static const field render_fields[] = {
 #define R(...) FIELD(glint_render_desc, __VA_ARGS__)
@@ -185,8 +180,6 @@ static const field render_fields[] = {
     R(derivatives, FIXED, 0, 0),    R(derivative_count, FIXED, 0, 0),
 #undef R
 };
-
-#define COUNT(fields) (sizeof(fields) / sizeof *(fields))
 
 /// The identity, a similarity, or a map that makes ellipsoids.
 static void set_transform(glint_transform *out)
@@ -299,11 +292,11 @@ static void table_names_all(const char *what, const field *fields, size_t count,
 static void tables_name_every_field(void **unused)
 {
     (void)unused;
-    table_names_all("material", material_fields, material_count, sizeof(glint_material_desc));
-    table_names_all("light", light_fields, light_count, sizeof(glint_light_desc));
-    table_names_all("camera", camera_fields, COUNT(camera_fields), sizeof(glint_camera_desc));
-    table_names_all("shape", shape_fields, COUNT(shape_fields), sizeof(glint_shape_desc));
-    table_names_all("scene", scene_fields, COUNT(scene_fields), sizeof(glint_scene_desc));
+    table_names_all("material", material_table.of, material_table.count, sizeof(glint_material_desc));
+    table_names_all("light", light_table.of, light_table.count, sizeof(glint_light_desc));
+    table_names_all("camera", camera_table.of, camera_table.count, sizeof(glint_camera_desc));
+    table_names_all("shape", shape_table.of, shape_table.count, sizeof(glint_shape_desc));
+    table_names_all("scene", scene_table.of, scene_table.count, sizeof(glint_scene_desc));
     table_names_all("render", render_fields, COUNT(render_fields), sizeof(glint_render_desc));
 }
 
@@ -313,7 +306,7 @@ static void edit_material(world *w)
 {
     glint_material *material = w->materials[draw(SHAPES)];
     glint_material_desc d = *glint_material_get(material);
-    set_field(pick(material_fields, material_count), &d);
+    set_field(pick(material_table.of, material_table.count), &d);
     glint_material_set(material, &d, NULL);
 }
 
@@ -336,7 +329,7 @@ static void edit_light(world *w)
         d.vertices = (const double(*)[3])corners;
         d.vertex_count = 3 + draw(2);
     } else {
-        set_field(pick(light_fields, light_count), &d);
+        set_field(pick(light_table.of, light_table.count), &d);
         d.intensity = d.has_radiance ? 1 : d.intensity;
     }
     glint_light_set(w->lights[i], &d, NULL);
@@ -360,7 +353,7 @@ static void edit_shape(world *w)
     if (draw(5) == 0)
         d.material = w->materials[draw(SHAPES)];
     else
-        set_field(pick(shape_fields, COUNT(shape_fields)), &d);
+        set_field(pick(shape_table.of, shape_table.count), &d);
     glint_shape_set(shape, &d, NULL);
 }
 
@@ -381,11 +374,11 @@ static void edit_frame(world *w)
     glint_scene_desc s = *glint_scene_get(w->scene);
     switch (draw(3)) {
     case 0:
-        set_field(pick(camera_fields, COUNT(camera_fields)), &c);
+        set_field(pick(camera_table.of, camera_table.count), &c);
         keep_focus(&c);
         break;
     case 1:
-        set_field(pick(scene_fields, COUNT(scene_fields)), &s);
+        set_field(pick(scene_table.of, scene_table.count), &s);
         break;
     default:
         set_field(pick(render_fields, COUNT(render_fields)), &w->render);

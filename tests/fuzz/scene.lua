@@ -49,17 +49,9 @@ function value()
 end
 
 local FIELDS = {
-  sphere = { "center", "radius", "material", "transform", "two_sided" }, plane = { "point", "normal", "material", "transform" },
-  box = { "min", "max", "material", "transform" }, disk = { "center", "normal", "radius", "material" },
-  cylinder = { "base", "top", "radius", "capped", "material", "transform" }, cone = { "base", "top", "radius", "capped", "material" },
-  torus = { "center", "axis", "major", "minor", "material", "transform" },
   mesh = { "vertices", "faces", "normals", "shading", "material", "uv", "index" },
   spheres = { "data", "format", "material", "index" },
-  sphere_mesh = { "center", "radius", "segments", "shading" }, group = { "transform" },
-  union = { "material", "transform", "two_sided", "part" }, intersection = { "material", "part" },
-  difference = { "transform", "part" },
-  camera = { "eye", "at", "direction", "up", "fov", "projection", "height", "pixel_offset", "aperture", "focus", "blades", "blade_rotation",
-    "shutter", "shutter_times" },
+  sphere_mesh = { "center", "radius", "segments", "shading" },
   ambient_occlusion = { "distance" },
   label = { "text", "at", "at_point", "position", "size", "margin", "color", "background", "opacity" },
   colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
@@ -68,14 +60,6 @@ local FIELDS = {
   line = { "from", "to", "label", "width", "hidden", "opacity" },
   arc = { "at", "from", "to", "radius", "label", "width", "hidden" },
 }
-for _, name in ipairs { "material", "point_light", "directional_light", "spot_light", "disk_light", "polygon_light", "sphere_light" } do
-  FIELDS[name] = {}
-  for i, row in ipairs(glint._rows(name)) do FIELDS[name][i] = row.name end
-end
-local NAMES = {}
-for name in pairs(FIELDS) do NAMES[#NAMES + 1] = name end
-table.sort(NAMES)
-
 -- The functions of the module that may raise a message. Lua's own messages for a programming error are not accepted.
 local function refused(message)
   assert(type(message) == "string", "an error that is no text")
@@ -103,6 +87,18 @@ local GOOD = {
   arrow = { from = { 0, 0, 0 }, to = { 2, 1, 0 }, label = "a" }, line = { from = { -2, 0, 0 }, to = { 2, 1, 0 } },
   arc = { at = { 0, 1, 0 }, from = { 1, 0, 0 }, to = { 0, 1, 0 } },
 }
+
+-- The fields of the other objects are in the engine's tables. "part" adds a shape to a combined solid.
+local COMBINED = { union = true, intersection = true, difference = true }
+local NAMES = {}
+for name in pairs(GOOD) do
+  NAMES[#NAMES + 1] = name
+  if not FIELDS[name] then
+    FIELDS[name] = { COMBINED[name] and "part" }
+    for _, row in ipairs(glint._rows(name)) do table.insert(FIELDS[name], row.name) end
+  end
+end
+table.sort(NAMES)
 
 -- Shapes that can be parts of a CSG shape, and some that cannot.
 local PARTS = { "sphere", "box", "torus", "cylinder", "cone", "plane", "disk", "mesh", "group", "union", "difference" }

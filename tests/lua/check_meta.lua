@@ -47,16 +47,18 @@ local function read_meta(text)
   return classes, functions
 end
 
--- Collects the fields of a class and of its parents.
-local function all_fields(classes, name, into)
+-- Collects the members of one kind, "fields" or "methods", of a class and of its parents.
+local function inherited(classes, name, kind, into)
   into = into or {}
-  for field in pairs(classes[name].fields) do into[field] = true end
+  for member in pairs(classes[name][kind]) do into[member] = true end
   for _, parent in ipairs(classes[name].parents) do
     check(classes[parent], "class %s: no such parent %s", name, parent)
-    if classes[parent] then all_fields(classes, parent, into) end
+    if classes[parent] then inherited(classes, parent, kind, into) end
   end
   return into
 end
+
+local function all_fields(classes, name) return inherited(classes, name, "fields") end
 
 local root = arg[0]:match "^(.*)/tests/[^/]*$" or "."
 local classes, functions = read_meta(filled(root .. "/bindings/meta/glint.lua"))
@@ -83,18 +85,18 @@ for kind, members in pairs(registered) do
   local class = classes["glint." .. kind]
   check(class, "%s is registered, but has no class", kind)
   if class then
-    local fields = all_fields(classes, "glint." .. kind)
+    local fields, methods = all_fields(classes, "glint." .. kind), inherited(classes, "glint." .. kind, "methods")
     for name, how in pairs(members) do
       if how == "field" then
         check(fields[name], "%s.%s is registered, but not described", kind, name)
       else
-        check(class.methods[name], "%s:%s() is registered, but not described", kind, name)
+        check(methods[name], "%s:%s() is registered, but not described", kind, name)
       end
     end
     for name in pairs(fields) do
       check(members[name] == "field", "%s.%s is described, but not registered", kind, name)
     end
-    for name in pairs(class.methods) do
+    for name in pairs(methods) do
       check(members[name] == "method", "%s:%s() is described, but not registered", kind, name)
     end
   end

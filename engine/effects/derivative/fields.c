@@ -12,8 +12,6 @@
     { .name = #field, .member = #field, .type = GLINT_TYPE_##kind, .offset = offsetof(glint_##desc##_desc, field), .takes = GLINT_TAKES_VARIABLE }
 #define LIST(...) (const glint_object_field[]) { __VA_ARGS__, { .name = NULL } }
 
-static const glint_object_field *const sphere_fields = LIST(FIELD(shape, center, VECTOR), FIELD(shape, radius, NUMBER));
-static const glint_object_field *const plane_fields = LIST(FIELD(shape, point, VECTOR), FIELD(shape, normal, VECTOR));
 static const glint_object_field *const camera_fields =
     LIST(FIELD(camera, eye, VECTOR), FIELD(camera, at, VECTOR), FIELD(camera, direction, VECTOR), FIELD(camera, up, VECTOR),
          FIELD(camera, fov_y_rad, NUMBER), FIELD(camera, height, NUMBER), FIELD(camera, aperture, NUMBER),
@@ -21,12 +19,6 @@ static const glint_object_field *const camera_fields =
 static const glint_object_field *const scene_fields =
     LIST(FIELD(scene, ambient, VECTOR), FIELD(scene, background, VECTOR), FIELD(scene, depth_cue_color, VECTOR),
          FIELD(scene, depth_cue_near, NUMBER), FIELD(scene, depth_cue_far, NUMBER));
-
-static const glint_object_field *shape_fields(glint_shape_kind kind)
-{
-    static const glint_object_field none = { .name = NULL };
-    return kind == GLINT_SHAPE_SPHERE ? sphere_fields : kind == GLINT_SHAPE_PLANE ? plane_fields : &none;
-}
 
 static bool has_derivative(const glint_object_field *field) { return field->takes & GLINT_TAKES_VARIABLE; }
 
@@ -153,10 +145,10 @@ static glint_status add_shape(const glint_plan *plan, const glint_derivative *d,
                               glint_scene_slopes *out, glint_error *error)
 {
     const glint_shape_kind kind = s->shape->desc.kind;
-    const glint_object_field *field = find_field(shape_fields(kind), s->field);
+    const glint_object_field *field = find_field(glint_shape_fields[kind], s->field);
     if (!field)
         return refuse_field(d, kind == GLINT_SHAPE_SPHERE ? "sphere" : kind == GLINT_SHAPE_PLANE ? "plane" : "shape", s->field,
-                            shape_fields(kind), error);
+                            glint_shape_fields[kind], error);
     for (uint32_t i = 0; i < plan->geometry->part_count; i++)
         if (plan->geometry->parts[i].shape == s->shape)
             add(&out->shapes[i], field, s->slope);
