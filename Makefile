@@ -324,7 +324,7 @@ check: ## every test; T=name runs those whose name has it
 	@$(MAKE) --no-print-directory check-run
 
 check-run: tests
-	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
+	@T="$(T)" $(RUNNER) make:lint make:check-headers make:check-symbols make:check-layers $(TEST_BIN) $(HARD_BIN) $(SCRIPTED)
 
 # Tests worth running under a sanitizer: C, Lua and the command line. Excludes tests of other programs and of
 # installed files, and tests that only run scripts which other tests also run.
