@@ -329,8 +329,8 @@ check-run: tests
 # Tests worth running under a sanitizer: C, Lua and the command line. Excludes tests of other programs and of
 # installed files, and tests that only run scripts which other tests also run.
 SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh readme.sh) machines/systems.sh),$(SCRIPTED))
-# Tests of threads: tiles, BVH, bands of rows, the writer, the cache between frames, the server of watch. Two of the
-# instruction sets suffice: threads share the same data in all of them.
+# Tests of threads: tiles, BVH, bands of rows, the writer, the cache between frames, the server of watch. One
+# instruction set suffices: threads share the same data in all of them.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
@@ -342,7 +342,7 @@ asan: ## the tests under AddressSanitizer and UBSan, in build-asan/, with the ge
 tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g1" KERNEL_CFLAGS=-O1 SANITIZE=thread \
-	    KERNELS="$(filter generic avx2,$(KERNELS))" PRELOAD=libtsan.so ITEMS='$$(THREADED)'
+	    KERNELS=$(BEST) PRELOAD=libtsan.so ITEMS='$$(THREADED)'
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
@@ -432,7 +432,7 @@ check-musl: ## goldens and a job's pixels by a static command on musl, with no o
 	@tests/machines/libraries.sh $(MUSL_LIBRARIES) musl-gcc ar
 	@$(MAKE) --no-print-directory all
 	@PKG_CONFIG_LIBDIR=$(MUSL_LIBRARIES)/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(MUSL) CC=musl-gcc LDFLAGS=-static \
-	    KERNELS="generic avx2" $(MUSL)/glint
+	    KERNELS=$(BEST:avx512=avx2) $(MUSL)/glint
 	@$(MAKE) --no-print-directory check-musl-run
 
 check-musl-run:
