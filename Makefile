@@ -193,7 +193,8 @@ all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a $(if $(filter $(shell 
 # Only stages are compiled for an instruction set, except ref.c. Unrolling helps only in these files. Processors with
 # AVX2 also have BMI and POPCNT for masks; select.c checks for all of them.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
-FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma
+# UBSan cannot look into intrinsics. It checks the stages' sources in the generic kernels; ASan checks both.
+FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma $(if $(findstring undefined,$(SANITIZE)),-fno-sanitize=undefined -fno-sanitize=float-cast-overflow)
 FLAGS_avx512 := -mavx512f -mavx512dq -mavx512vl -mavx512bw $(FLAGS_avx2)
 # stage_rule SUFFIX, INSTRUCTION SET, FLAGS
 define stage_rule
