@@ -1,4 +1,5 @@
-// Camera rays, and hits of coherent bundles of rays: rays from one eye, parallel rays, and rays through a lens.
+// Camera rays, and hits of coherent bundles of rays: rays from one eye, also through pixels at any
+// position.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"

@@ -1,7 +1,7 @@
 // cast_rays: the nearest hit of rays with any origins. In small scenes, groups of rays are tested against all
 // primitives. Otherwise the rays of a group traverse the index together while they are coherent (together.h), and
-// then each on its own. The rays of a tile of an orthographic camera, or of a camera with a lens, traverse the index
-// as one beam (parallel.h). Contract: stages.h.
+// then each on its own. The rays of a tile of an orthographic camera without a lens traverse the index as one
+// beam (parallel.h). Contract: stages.h.
 #ifndef GLINT_CAST_RAYS_H
 #define GLINT_CAST_RAYS_H
 
@@ -160,39 +160,18 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
 {
     const glint_geometry_table *geometry = args->geometry;
     const real *t = (const real *)args->t + (size_t)g * GLINT_GROUP + lane;
-    ray_view ray = { .slack = R(walk_slack)(geometry) };
+    const glint_node *node;
+    ray_walk walk;
+    unsigned prims;
+    walk.ray.slack = R(walk_slack)(geometry);
     for (int k = 0; k < 3; k++) {
-        ray.origin[k] = rays->local[k][lane];
-        ray.inverse[k] = 1 / rays->direction[k][lane];
+        walk.ray.origin[k] = rays->local[k][lane];
+        walk.ray.inverse[k] = 1 / rays->direction[k][lane];
     }
-    walk_entry stack[WALK_STACK];
-    int height = 0;
-    stack[height++] = (walk_entry) { 0, 0 };
-    while (height > 0) {
-        const walk_entry top = stack[--height];
-        const float far = (float)(*t * (real)geometry->scale) * (1 + 0x1p-22f);
-        if (far < top.depth)
-            continue;
-        _Alignas(64) float depth[GLINT_NODE_WIDTH];
-        int order[GLINT_NODE_WIDTH];
-        const glint_node *node = &geometry->nodes[top.node];
-        const int count = sort_slots(boxes_on_ray(node, &ray, far, depth), depth, order);
-        for (int i = 0; i < count; i++)
-            if (node->child[order[i]] & GLINT_NODE_PRIM)
-                R(cast_on_group)(args, g, rays, node->child[order[i]] & ~GLINT_NODE_PRIM);
-        for (int i = count; i-- > 0;)
-            if (!(node->child[order[i]] & GLINT_NODE_PRIM))
-                stack[height++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
-    }
-}
-
-
-#define LENS_BEAM 8 ///< if radius / focus distance of the lens is above this, the rays of a tile are not coherent
-
-/// Returns whether the rays traverse the index as one beam.
-static inline bool R(is_beam)(const glint_camera_args *camera)
-{
-    return camera && !(camera->lens && camera->lens->radius * camera->lens->per_focus > LENS_BEAM);
+    begin_ray_walk(&walk, geometry->nodes);
+    while ((node = next_on_ray(&walk, R(reach_in_index)(args, *t), &prims)))
+        for (; prims; prims &= prims - 1)
+            R(cast_on_group)(args, g, rays, node->child[__builtin_ctz(prims)] & ~GLINT_NODE_PRIM);
 }
 
 /// Prepares a group's rays for filter and traversal. local: memory for the origins of the rays.

@@ -38,6 +38,15 @@ static inline void box_along(const vf middle[3], const vf half[3], const float a
     *high = at + reach;
 }
 
+/// Returns the slots that hold a primitive.
+static inline unsigned prims_of_node(const glint_node *node)
+{
+    unsigned prims = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF)
+        prims |= fm_bits(i_lt(i_load(node->child + i), i_set(0))) << i;
+    return prims;
+}
+
 // ---- A shaft: all segments from a box of points to a light's box (for a point light, a point), or along one
 // direction ----
 
@@ -162,6 +171,37 @@ static unsigned boxes_in_shaft(const glint_node *node, const light_shaft *shaft)
     return inside;
 }
 
+/// A traversal of the index by a shaft.
+typedef struct shaft_walk {
+    const glint_node *nodes;
+    light_shaft shaft;
+    int height;
+    uint32_t stack[WALK_STACK];
+} shaft_walk;
+
+/// Starts at the root. lower, upper: as for make_shaft.
+static void begin_shaft_walk(shaft_walk *walk, const glint_node *nodes, const float lower[3], const float upper[3],
+                             const light_bounds *light)
+{
+    walk->nodes = nodes;
+    walk->height = nodes != NULL;
+    walk->stack[0] = 0;
+    make_shaft(lower, upper, light, &walk->shaft);
+}
+
+/// Returns the next node, or NULL at the end. *prims: the slots of the primitives that the shaft may touch.
+static const glint_node *next_in_shaft(shaft_walk *walk, unsigned *prims)
+{
+    if (!walk->height)
+        return NULL;
+    const glint_node *node = &walk->nodes[walk->stack[--walk->height]];
+    const unsigned inside = boxes_in_shaft(node, &walk->shaft);
+    *prims = inside & prims_of_node(node);
+    for (unsigned bits = inside & ~*prims; bits; bits &= bits - 1)
+        walk->stack[walk->height++] = node->child[__builtin_ctz(bits)];
+    return node;
+}
+
 // ---- One ray ----
 
 typedef struct ray_view {
@@ -191,6 +231,61 @@ static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float 
     return inside;
 }
 
+/// Sorts the slots of `mask` into `order`, nearest first. Returns the number of slots.
+static inline int sort_slots(unsigned mask, const float depth[GLINT_NODE_WIDTH], int order[GLINT_NODE_WIDTH])
+{
+    int count = 0;
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        int at = count++;
+        for (; at > 0 && depth[slot] < depth[order[at - 1]]; at--)
+            order[at] = order[at - 1];
+        order[at] = slot;
+    }
+    return count;
+}
+
+/// A traversal of the index by one ray.
+typedef struct ray_walk {
+    const glint_node *nodes;
+    ray_view ray;
+    int height;
+    struct {
+        uint32_t node;
+        float depth; ///< distance at which the ray enters the node
+    } stack[WALK_STACK];
+} ray_walk;
+
+/// Starts at the root.
+static void begin_ray_walk(ray_walk *walk, const glint_node *nodes)
+{
+    walk->nodes = nodes;
+    walk->height = 1;
+    walk->stack[0].node = 0;
+    walk->stack[0].depth = 0;
+}
+
+/// Returns the nearest node that the ray may enter before `far`, or NULL at the end. *prims: the slots of the
+/// primitives whose boxes the ray may enter before `far`.
+static const glint_node *next_on_ray(ray_walk *walk, float far, unsigned *prims)
+{
+    _Alignas(64) float depth[GLINT_NODE_WIDTH];
+    int order[GLINT_NODE_WIDTH];
+    do {
+        if (!walk->height)
+            return NULL;
+        walk->height--;
+    } while (far < walk->stack[walk->height].depth);
+    const glint_node *node = &walk->nodes[walk->stack[walk->height].node];
+    const unsigned inside = boxes_on_ray(node, &walk->ray, far, depth);
+    *prims = inside & prims_of_node(node);
+    for (int i = sort_slots(inside & ~*prims, depth, order); i-- > 0; walk->height++) {
+        walk->stack[walk->height].node = node->child[order[i]];
+        walk->stack[walk->height].depth = depth[order[i]];
+    }
+    return node;
+}
+
 /// Returns whether the call should stop. Long traversals check this from time to time.
 static inline bool is_stopped(const atomic_bool *stop)
 {
@@ -217,27 +312,6 @@ static inline bool is_open(const glint_solid *solid)
 static inline bool is_torus(const glint_geometry_table *table, const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form == GLINT_FORM_TORUS;
-}
-
-// ---- The order of traversal ----
-
-typedef struct walk_entry {
-    uint32_t node;
-    float depth;
-} walk_entry;
-
-/// Sorts the slots of `mask` into `order`, nearest first. Returns the number of slots.
-static inline int sort_slots(unsigned mask, const float depth[GLINT_NODE_WIDTH], int order[GLINT_NODE_WIDTH])
-{
-    int count = 0;
-    for (; mask; mask &= mask - 1) {
-        const int slot = __builtin_ctz(mask);
-        int at = count++;
-        for (; at > 0 && depth[slot] < depth[order[at - 1]]; at--)
-            order[at] = order[at - 1];
-        order[at] = slot;
-    }
-    return count;
 }
 
 #endif
