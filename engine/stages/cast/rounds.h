@@ -1,8 +1,8 @@
 // rounds: traverses incoherent rays in scenes with triangles and solids. The rays of a group traverse the index in
 // rounds, one node each per round. The triangles that they reach are decided in double, a vector of pairs of ray and
 // triangle at a time, with a different pair in each lane. Pairs to which the rules of shared edges may apply are left
-// to decide_rays. A solid is decided for all rays that reach it in the same round. If there are only spheres, hits
-// are not decided during traversal, and rays are traversed one after the other. Contract: stages.h, cast.
+// to decide_rays. A solid is decided for all rays that reach it in the same round. Spheres are decided after the
+// traversal (nearest.h). Contract: stages.h, cast.
 #ifndef GLINT_CAST_ROUNDS_H
 #define GLINT_CAST_ROUNDS_H
 
@@ -334,31 +334,6 @@ static __attribute__((noinline)) void R(walk_in_rounds)(const glint_cast_args *a
             R(decide_triangles)(args, g, rounds);
         if (rounds->solids)
             R(decide_solids)(args, g, rays, rounds);
-    }
-}
-
-/// Continues the traversal of one ray in float, in an index that only has spheres.
-static void R(walk_lone_ray)(const glint_cast_args *args, int lane, R(rounds) * rounds)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    const R(lone_ray) *ray = &rounds->ray[lane];
-    R(node_stack) *stack = &rounds->stack[lane];
-    int height = stack->height;
-    while (height > 0) {
-        const uint32_t top = stack->node[--height];
-        if (rounds->first.far[lane] < stack->depth[height])
-            continue;
-        _Alignas(64) float depth[GLINT_NODE_WIDTH];
-        int order[GLINT_NODE_WIDTH];
-        const glint_node *node = &geometry->nodes[top];
-        const unsigned prims = prims_of_node(node), leaf = prims | lanes_equal(node->child, 0); // 0: no child
-        const unsigned mask = leaf == 0xffff ? prims : R(boxes_of_lone_ray)(node, ray, rounds->first.far[lane], depth);
-        if (mask & prims)
-            R(note_balls)(node, mask & prims, ray, lane, &rounds->first);
-        for (int i = sort_slots(mask & ~prims, depth, order); i-- > 0; height++) {
-            stack->node[height] = node->child[order[i]];
-            stack->depth[height] = depth[order[i]];
-        }
     }
 }
 

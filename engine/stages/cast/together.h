@@ -316,10 +316,9 @@ static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, 
     R(rounds) buffer, *const rounds = &buffer;
     R(common_walk) walk;
     const size_t at = (size_t)g * GLINT_GROUP;
-    const bool mixed = args->geometry->triangles || args->geometry->solids;
     unsigned alone = 0;
     R(begin_balls)(args, at, &rounds->first);
-    if (mixed)
+    if (args->geometry->triangles)
         R(permute_rays)(args, at, lanes, &rounds->permuted);
     rounds->count = rounds->solids = 0;
     for (unsigned bits = lanes; bits; bits &= bits - 1)
@@ -337,10 +336,7 @@ static __attribute__((noinline)) void R(walk_rays)(const glint_cast_args *args, 
         R(load_lone_ray)(args, at + (size_t)lane, rays, lone, &rounds->ray[lane]);
         alone |= bits & -bits;
     }
-    if (mixed && alone)
-        R(walk_in_rounds)(args, g, rays, alone, rounds);
-    for (; !mixed && alone; alone &= alone - 1)
-        R(walk_lone_ray)(args, __builtin_ctz(alone), rounds);
+    R(walk_in_rounds)(args, g, rays, alone, rounds);
     R(pair_first)(args, at, lanes, &rounds->first, pairs);
 }
 
