@@ -148,39 +148,49 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
     }
 }
 
-/// Lists the first GLINT_CAPS primitives from `from` on that may occlude the light, in the table's order. Returns
-/// their number.
-static int R(find_caps)(const R(shadow_tile) * tile, const light_shaft *shaft, uint32_t from, uint32_t ids[GLINT_CAPS])
+/// Adds a primitive to the sorted list of the first GLINT_CAPS primitives from `from` on. Returns the list's length.
+static int R(add_cap)(uint32_t id, uint32_t from, uint32_t ids[GLINT_CAPS], int count)
+{
+    if (id < from || (count == GLINT_CAPS && id > ids[count - 1]))
+        return count;
+    int at = count < GLINT_CAPS ? count++ : GLINT_CAPS - 1;
+    for (; at > 0 && ids[at - 1] > id; at--)
+        ids[at] = ids[at - 1];
+    ids[at] = id;
+    return count;
+}
+
+/// Lists the first GLINT_CAPS primitives from `from` on that may occlude the light, in the table's order. lower, upper:
+/// the box of the points. Returns their number.
+static int R(find_caps)(const R(shadow_tile) * tile, const float lower[3], const float upper[3], uint32_t from,
+                        uint32_t ids[GLINT_CAPS])
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    uint32_t stack[WALK_STACK], found[GLINT_NODE_WIDTH];
-    int count = 0, height = 0;
-    if (geometry->nodes)
-        stack[height++] = 0;
-    for (uint32_t next = 0; height > 0 || next < geometry->unbounded_count;) {
-        int some = 0;
-        if (next < geometry->unbounded_count) {
-            found[some++] = geometry->unbounded[next++];
-        } else {
-            const glint_node *node = &geometry->nodes[stack[--height]];
-            for (unsigned mask = boxes_in_shaft(node, shaft); mask; mask &= mask - 1) {
-                const uint32_t child = node->child[__builtin_ctz(mask)];
-                if (child & GLINT_NODE_PRIM)
-                    found[some++] = child & ~GLINT_NODE_PRIM;
-                else
-                    stack[height++] = child;
-            }
-        }
-        for (int k = 0; k < some; k++) {
-            if (found[k] < from || (count == GLINT_CAPS && found[k] > ids[count - 1]))
-                continue;
-            int at = count < GLINT_CAPS ? count++ : GLINT_CAPS - 1;
-            for (; at > 0 && ids[at - 1] > found[k]; at--)
-                ids[at] = ids[at - 1];
-            ids[at] = found[k];
-        }
-    }
+    const glint_node *node;
+    shaft_walk walk;
+    unsigned prims;
+    int count = 0;
+    for (uint32_t i = 0; i < geometry->unbounded_count; i++)
+        count = R(add_cap)(geometry->unbounded[i], from, ids, count);
+    begin_shaft_walk(&walk, geometry->nodes, lower, upper, &tile->light);
+    while ((node = next_in_shaft(&walk, &prims)))
+        for (; prims; prims &= prims - 1)
+            count = R(add_cap)(node->child[__builtin_ctz(prims)] & ~GLINT_NODE_PRIM, from, ids, count);
     return count;
+}
+
+/// Computes the bounding box of a group's lanes, enlarged by rounding errors.
+static void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * group, unsigned lanes, float lower[3],
+                         float upper[3])
+{
+    R(place_group)(tile, group);
+    for (int k = 0; k < 3; k++) {
+        vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
+        widen(group->local[k], lanes, &least, &most);
+        lower[k] = f_min_all(least);
+        upper[k] = f_max_all(most);
+    }
+    loosen(lower, upper, R(walk_slack)(tile->args->geometry));
 }
 
 /// Computes the shares of one group. Returns the lanes with a share above 0.
@@ -189,15 +199,13 @@ static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsign
     const glint_occlude_args *args = tile->args;
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
     float lower[3], upper[3];
-    light_shaft shaft;
     uint32_t ids[GLINT_CAPS], from = 0;
     int count;
     R(begin_group)(g, &group);
     R(make_light_cap)(args, group.at, cap);
     R(group_box)(tile, &group, lit, lower, upper);
-    make_shaft(lower, upper, &tile->light, &shaft);
     do {
-        count = R(find_caps)(tile, &shaft, from, ids);
+        count = R(find_caps)(tile, lower, upper, from, ids);
         for (int k = 0; k < count; k++) {
             const glint_prim *prim = &args->geometry->prims[ids[k]];
             const unsigned own = lanes_equal(args->prim + group.at, ids[k]) & lit;

@@ -37,11 +37,9 @@ static void R(decide_segments)(R(layers) * l, const glint_prim *prim)
     const real(*light)[GLINT_GROUP] = (const real(*)[GLINT_GROUP])l->light;
     if (!batch->count)
         return;
-    unsigned blocked = (1u << batch->count) - 1;
-    if (prim->kind == GLINT_PRIM_TRIANGLE)
-        blocked = R(blocked_by_triangle)(&batch->args, prim, light, 0, batch->own, blocked);
-    else
-        blocked = R(batch_blocked)(batch, prim, light, R(seen_sides)(l->tile, light, prim), blocked);
+    const R(light_sides) sides = R(seen_sides)(l->tile, light, prim);
+    const unsigned all = (1u << batch->count) - 1;
+    unsigned blocked = R(decide_blocked)(&batch->args, prim, light, 0, sides, batch->own, all);
     for (; blocked; blocked &= blocked - 1)
         R(close_segment)(l, batch->from[__builtin_ctz(blocked)]);
     batch->count = 0;

@@ -190,21 +190,16 @@ static void R(walk_layers)(R(layers) * l)
 {
     const R(shadow_tile) *tile = l->tile;
     const glint_geometry_table *geometry = tile->args->geometry;
-    uint32_t stack[WALK_STACK];
-    int height = 0;
-    light_shaft shaft;
-    make_shaft(tile->lower, tile->upper, &tile->light, &shaft);
-    stack[height++] = 0;
-    while (height > 0 && l->unoccluded && !is_stopped(tile->args->stop)) {
-        const glint_node *node = &geometry->nodes[stack[--height]];
-        const unsigned inside = boxes_in_shaft(node, &shaft), prims = prims_of_node(node);
-        for (unsigned bits = inside & ~prims; bits; bits &= bits - 1)
-            stack[height++] = node->child[__builtin_ctz(bits)];
-        if (!(inside & prims))
+    const glint_node *node;
+    shaft_walk walk;
+    unsigned prims;
+    begin_shaft_walk(&walk, geometry->nodes, tile->lower, tile->upper, &tile->light);
+    while (l->unoccluded && !is_stopped(tile->args->stop) && (node = next_in_shaft(&walk, &prims))) {
+        if (!prims)
             continue;
         if (l->count + GLINT_NODE_WIDTH > LAYER_PRIMS)
             R(block_noted)(l);
-        R(note_prims)(l, node, inside & prims);
+        R(note_prims)(l, node, prims);
     }
     R(block_noted)(l);
 }

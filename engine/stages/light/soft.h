@@ -232,25 +232,13 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     const unsigned all = (1u << VR) - 1, own = lanes_equal(args->prim + at, id) & near;
     const unsigned back = sphere ? args->back[at / GLINT_GROUP] & own : 0, others = near & ~own;
-    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+    if (!sphere && prim->kind != GLINT_PRIM_PLANE) {
+        const unsigned wanted =
+            prim->kind == GLINT_PRIM_COMBINED ? R(stay_in_combined)(args, prim, at, near) : near;
         for (uint32_t s = 0; s < args->sample_count; s++)
             light->unoccluded[s] &=
-                ~R(blocked_by_triangle)(args, prim, light->light_samples.light_sample[s].position, at,
-                                        own & light->unoccluded[s], near & light->unoccluded[s]);
-        return;
-    }
-    if (prim->kind == GLINT_PRIM_SOLID) {
-        for (uint32_t s = 0; s < args->sample_count; s++)
-            light->unoccluded[s] &= ~R(blocked_by_solid)(args, prim, light->light_samples.light_sample[s].position, at,
-                                                         own & light->unoccluded[s], near & light->unoccluded[s],
-                                                         light->sides[k][s].outside);
-        return;
-    }
-    if (prim->kind == GLINT_PRIM_COMBINED) {
-        const unsigned wanted = R(stay_in_combined)(args, prim, at, near);
-        for (uint32_t s = 0; s < args->sample_count; s++)
-            light->unoccluded[s] &= ~R(blocked_by_combined)(args, prim, light->light_samples.light_sample[s].position,
-                                                            at, wanted & light->unoccluded[s]);
+                ~R(decide_blocked)(args, prim, light->light_samples.light_sample[s].position, at, light->sides[k][s],
+                                   own & light->unoccluded[s], wanted & light->unoccluded[s]);
         return;
     }
     for (uint32_t s = 0; back && s < args->sample_count; s++)

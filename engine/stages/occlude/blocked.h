@@ -19,10 +19,6 @@
     ///< float decides
 #define GLINT_OCCLUDERS_FEW 12
 #define FAR_LIGHT 0x1p60 ///< in the index's units; at larger distances, squares of the distance may overflow float
-#define GLINT_SHAFTS_TRIED 3 ///< after this number of consecutive groups whose shaft failed, the tile tries no more
-    ///< shafts
-#define GLINT_SHAFT_NODES 16 ///< maximum number of nodes that a group's shaft visits; then each lane traverses the
-    ///< index separately
 
 /// The position of the light relative to a primitive, one bit per lane: outside (or in front), inside (or behind). A
 /// light on the surface has neither bit.
@@ -56,7 +52,6 @@ typedef struct R(shadow_group) {
     bool placed, made;
     _Alignas(64) float local[3][GLINT_GROUP]; ///< only set if `placed`: the points in the index's frame
     uint32_t last_blocker; ///< the last primitive that blocked a point in the groups so far, or GLINT_MISS
-    int shafts_failed; ///< number of consecutive groups, up to the last one, whose shaft failed
     R(ray_group) rays; ///< only set if `made`: the rays in the index's units; --precision float: in the light's units
     _Alignas(64) float inverse[3][GLINT_GROUP]; ///< one over the components of the rays' directions, if there are
         ///< solids
@@ -391,6 +386,35 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
     return rm_bits(R(plane_blocks)(outside, inside, R(point_constant)(f, prim)));
 }
 
+/// Returns the lanes of `wanted` that a primitive blocks from lights at `position`. own: lanes whose points are on the
+/// primitive; if it is a sphere, it blocks those that are seen from behind. sides: where the lights are.
+static unsigned R(decide_blocked)(const glint_occlude_args *args, const glint_prim *prim,
+                                  const real position[3][GLINT_GROUP], size_t at, R(light_sides) sides, unsigned own,
+                                  unsigned wanted)
+{
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return R(blocked_by_triangle)(args, prim, position, at, own, wanted);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return R(blocked_by_solid)(args, prim, position, at, own, wanted, sides.outside);
+    if (prim->kind == GLINT_PRIM_COMBINED)
+        return R(blocked_by_combined)(args, prim, position, at, wanted);
+    unsigned blocked = prim->kind == GLINT_PRIM_SPHERE ? own & args->back[at / GLINT_GROUP] & sides.outside : 0;
+    wanted &= ~own;
+    if (!wanted)
+        return blocked;
+    count_tests(args->tests, wanted);
+    const R(ball) ball = R(ball_of)(prim);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
+        vr d[3];
+        if (!lanes)
+            continue;
+        R(directions_to)(args, position, at, i, d);
+        blocked |= (R(lanes_blocked)(args, prim, &ball, sides, at, i, d) & lanes) << i;
+    }
+    return blocked;
+}
+
 /// Lanes of a group after the float test of their segments against a sphere.
 typedef struct R(sphere_lanes) {
     unsigned near; ///< the sphere may block them
@@ -453,58 +477,30 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
 {
     const glint_occlude_args *args = tile->args;
     const glint_prim *prim = &args->geometry->prims[occluder.id];
-    const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     const unsigned own = lanes_equal(args->prim + group->at, occluder.id) & wanted;
-    unsigned blocked = 0;
-    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+    unsigned others = wanted & ~own, certain = 0;
+    if (prim->kind == GLINT_PRIM_COMBINED) { // its parts have points, itself has none
+        others = R(stay_in_combined)(args, prim, group->at, others);
+    } else if (prim->kind == GLINT_PRIM_TRIANGLE && others) {
         if (!group->made)
             R(make_shadow_rays)(tile, group);
-        wanted &= own | R(near_rays)(&group->rays, prim);
-        return R(blocked_by_triangle)(args, prim, tile->position, group->at, own, wanted);
-    }
-    if (prim->kind == GLINT_PRIM_SOLID) {
-        const unsigned others = wanted & ~own;
-        wanted &= own;
-        if (others)
-            wanted |= R(segments_near)(tile, prim, group, others);
-        if (!wanted)
-            return 0;
-        return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
-    }
-    if (prim->kind == GLINT_PRIM_COMBINED) {
-        wanted = R(stay_in_combined)(args, prim, group->at, wanted);
-        if (wanted)
-            wanted = R(segments_near)(tile, prim, group, wanted);
-        return wanted ? R(blocked_by_combined)(args, prim, tile->position, group->at, wanted) : 0;
-    }
-    if (own && sphere)
-        blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
-    wanted &= ~own;
-    R(sphere_lanes) sorted = { 0xffff, 0 };
-    if (wanted && sphere && occluder.sides.inside != 0xffff) { // if the light is inside, the sphere blocks every
-        // point outside
+        others &= R(near_rays)(&group->rays, prim);
+    } else if (prim->kind == GLINT_PRIM_SPHERE && others && occluder.sides.inside != 0xffff) {
+        // if the light is inside, the sphere blocks every point outside
         if (!group->made)
             R(make_shadow_rays)(tile, group);
-        sorted = R(sort_by_sphere)(tile, &group->rays, prim);
+        const R(sphere_lanes) sorted = R(sort_by_sphere)(tile, &group->rays, prim);
+        others &= sorted.near | occluder.sides.inside;
+        if (occluder.sides.outside == 0xffff)
+            certain = others & sorted.within;
+        count_tests(args->tests, certain);
+        others &= ~certain;
     }
-    wanted &= sorted.near | occluder.sides.inside;
-    count_tests(args->tests, wanted);
-    if (occluder.sides.outside == 0xffff) {
-        blocked |= wanted & sorted.within;
-        wanted &= ~sorted.within;
-    }
-    if (!wanted)
-        return blocked;
-    const R(ball) ball = R(ball_of)(prim);
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
-        vr d[3];
-        if (!lanes)
-            continue;
-        R(directions_to)(args, tile->position, group->at, i, d);
-        blocked |= (R(lanes_blocked)(args, prim, &ball, occluder.sides, group->at, i, d) & lanes) << i;
-    }
-    return blocked;
+    if (others && (prim->kind == GLINT_PRIM_SOLID || prim->kind == GLINT_PRIM_COMBINED))
+        others = R(segments_near)(tile, prim, group, others);
+    if (!(own | others))
+        return certain;
+    return certain | R(decide_blocked)(args, prim, tile->position, group->at, occluder.sides, own, own | others);
 }
 
 #endif

@@ -1,7 +1,7 @@
 // occlude: which points a light reaches. Contract: stages.h.
 //
-// The segments of a tile form a bundle seen from the light, which traverses the index once. If there are too many
-// occluders, each group traverses the index with its own, thinner shaft.
+// A shaft around all segments of the tile lists the occluders. If there are too many, the segments traverse the index
+// as a beam (through_beam.h) or, where there is none, one by one.
 #ifndef GLINT_OCCLUDE_OCCLUDE_H
 #define GLINT_OCCLUDE_OCCLUDE_H
 
@@ -68,28 +68,21 @@ static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
 static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    uint32_t stack[WALK_STACK];
-    int height = 0;
-    light_shaft shaft;
+    const glint_node *node;
+    shaft_walk walk;
+    unsigned prims;
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
         if (geometry->unbounded[i] != only && !R(note_occluder)(tile, geometry->unbounded[i]))
             return;
     tile->unbounded = tile->count;
-    if (!geometry->nodes)
-        return;
-    make_shaft(tile->lower, tile->upper, &tile->light, &shaft);
-    stack[height++] = 0;
-    while (height > 0) {
-        const glint_node *node = &geometry->nodes[stack[--height]];
-        for (unsigned mask = boxes_in_shaft(node, &shaft); mask; mask &= mask - 1) {
-            const uint32_t child = node->child[__builtin_ctz(mask)], id = child & ~GLINT_NODE_PRIM;
-            if (!(child & GLINT_NODE_PRIM))
-                stack[height++] = child;
-            else if (id != only && !R(sphere_apart)(&geometry->prims[id], tile->lower, tile->upper, &tile->light) &&
-                     !R(note_occluder)(tile, id))
+    begin_shaft_walk(&walk, geometry->nodes, tile->lower, tile->upper, &tile->light);
+    while ((node = next_in_shaft(&walk, &prims)))
+        for (; prims; prims &= prims - 1) {
+            const uint32_t id = node->child[__builtin_ctz(prims)] & ~GLINT_NODE_PRIM;
+            if (id != only && !R(sphere_apart)(&geometry->prims[id], tile->lower, tile->upper, &tile->light) &&
+                !R(note_occluder)(tile, id))
                 return;
         }
-    }
 }
 
 /// Returns whether the filter's data show that the whole light is certainly outside the sphere or solid.
@@ -130,51 +123,6 @@ static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const doubl
     return unoccluded & ~blocked;
 }
 
-/// Computes the bounding box of a group's lanes, enlarged by rounding errors.
-static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * group, unsigned lanes, float lower[3],
-                                float upper[3])
-{
-    R(place_group)(tile, group);
-    for (int k = 0; k < 3; k++) {
-        vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
-        widen(group->local[k], lanes, &least, &most);
-        lower[k] = f_min_all(least);
-        upper[k] = f_max_all(most);
-    }
-    loosen(lower, upper, R(walk_slack)(tile->args->geometry));
-}
-
-/// Traverses the index with the shaft of a group. Gives up if there are too many nodes to visit; *done: whether the
-/// traversal is complete.
-static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
-                              unsigned unoccluded, bool *done)
-{
-    const glint_geometry_table *geometry = tile->args->geometry;
-    float lower[3], upper[3];
-    uint32_t stack[WALK_STACK];
-    int height = 0;
-    light_shaft shaft;
-    R(group_box)(tile, group, unoccluded, lower, upper);
-    make_shaft(lower, upper, &tile->light, &shaft);
-    stack[height++] = 0;
-    for (int nodes = 0; height > 0 && unoccluded; nodes++) {
-        if (nodes == GLINT_SHAFT_NODES) {
-            *done = false;
-            return unoccluded;
-        }
-        const glint_node *node = &geometry->nodes[stack[--height]];
-        for (unsigned mask = boxes_in_shaft(node, &shaft); mask && unoccluded; mask &= mask - 1) {
-            const uint32_t child = node->child[__builtin_ctz(mask)];
-            if (child & GLINT_NODE_PRIM)
-                unoccluded = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, unoccluded);
-            else
-                stack[height++] = child;
-        }
-    }
-    *done = true;
-    return unoccluded;
-}
-
 /// Traverses the index with the segment of one lane. The primitives that the traversal reaches are tested against all
 /// unoccluded lanes.
 static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
@@ -182,31 +130,22 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*target)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const float far = tile->args->directional ? HUGE_VALF : 1;
-    ray_view ray = { .slack = R(walk_slack)(geometry) };
-    uint32_t stack[WALK_STACK];
-    int height = 0;
+    const glint_node *node;
+    ray_walk walk;
+    unsigned prims;
+    walk.ray.slack = R(walk_slack)(geometry);
     for (int k = 0; k < 3; k++) {
-        ray.origin[k] = group->local[k][lane];
-        const float light = tile->local_light[k][lane];
-        ray.inverse[k] = 1 / (tile->args->directional ? light : light - group->local[k][lane]);
+        const float origin = group->local[k][lane], light = tile->local_light[k][lane];
+        walk.ray.origin[k] = origin;
+        walk.ray.inverse[k] = 1 / (tile->args->directional ? light : light - origin);
         // accounts for the light's rounding error by enlarging the boxes
-        ray.slack = larger(ray.slack, WALK_SLACK * fabsf(light));
+        walk.ray.slack = larger(walk.ray.slack, WALK_SLACK * fabsf(light));
     }
-    stack[height++] = 0;
-    while (height > 0) {
-        _Alignas(64) float depth[GLINT_NODE_WIDTH];
-        const glint_node *node = &geometry->nodes[stack[--height]];
-        for (unsigned mask = boxes_on_ray(node, &ray, far, depth); mask; mask &= mask - 1) {
-            const uint32_t child = node->child[__builtin_ctz(mask)];
-            if (!(child & GLINT_NODE_PRIM)) {
-                stack[height++] = child;
-                continue;
-            }
-            unoccluded = R(test_occluder)(tile, target, group, child & ~GLINT_NODE_PRIM, unoccluded);
-            if (!(unoccluded >> lane & 1))
-                return unoccluded;
-        }
-    }
+    begin_ray_walk(&walk, geometry->nodes);
+    while (unoccluded >> lane & 1 && (node = next_on_ray(&walk, far, &prims)))
+        for (; prims && unoccluded >> lane & 1; prims &= prims - 1)
+            unoccluded = R(test_occluder)(tile, target, group, node->child[__builtin_ctz(prims)] & ~GLINT_NODE_PRIM,
+                                          unoccluded);
     return unoccluded;
 }
 
@@ -224,15 +163,11 @@ static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const doub
 static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*target)[GLINT_GROUP], R(shadow_group) * group,
                               unsigned unoccluded)
 {
-    bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
     if (group->last_blocker != GLINT_MISS) // a primitive that blocked the last group often blocks this one, too
         unoccluded = R(test_occluder)(tile, target, group, group->last_blocker, unoccluded);
-    if (unoccluded && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
-        unoccluded = R(walk_shaft)(tile, target, group, unoccluded, &done);
-        group->shafts_failed = done ? 0 : group->shafts_failed + 1;
-    }
-    for (unsigned bits = unoccluded; bits && !done && !is_stopped(tile->args->stop); bits &= (bits - 1) & unoccluded)
+    unsigned bits = tile->args->geometry->nodes ? unoccluded : 0;
+    for (; bits && !is_stopped(tile->args->stop); bits &= (bits - 1) & unoccluded)
         unoccluded = R(walk_lane)(tile, target, group, __builtin_ctz(bits), unoccluded);
     return unoccluded;
 }

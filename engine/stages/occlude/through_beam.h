@@ -11,36 +11,10 @@
 #include "engine/stages/occlude/beam_points.h"
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/occlude/grid.h"
-#include "engine/stages/occlude/near.h"
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/simd/real.h"
 
 // ---- The decision ----
-
-/// Returns the lanes of `wanted` that a primitive blocks from the light at `position`. sides: the side of the
-/// primitive that the light is on.
-static unsigned R(batch_blocked)(const R(beam_batch) * batch, const glint_prim *prim, const real position[3][GLINT_GROUP],
-                                 R(light_sides) sides, unsigned wanted)
-{
-    const unsigned own = batch->own;
-    if (prim->kind == GLINT_PRIM_SOLID)
-        return R(blocked_by_solid)(&batch->args, prim, position, 0, own, wanted, sides.outside);
-    if (prim->kind == GLINT_PRIM_COMBINED)
-        return R(blocked_by_combined)(&batch->args, prim, position, 0, wanted);
-    unsigned blocked = own & batch->back & sides.outside;
-    wanted &= ~own;
-    count_tests(batch->args.tests, wanted);
-    const R(ball) ball = R(ball_of)(prim);
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
-        vr d[3];
-        if (!lanes)
-            continue;
-        R(directions_to)(&batch->args, position, 0, i, d);
-        blocked |= (R(lanes_blocked)(&batch->args, prim, &ball, sides, 0, i, d) & lanes) << i;
-    }
-    return blocked;
-}
 
 static void R(decide_batch)(R(beam) * beam, const glint_prim *prim)
 {
@@ -49,7 +23,9 @@ static void R(decide_batch)(R(beam) * beam, const glint_prim *prim)
         return;
     const R(light_sides) sides = R(seen_sides)(beam->tile, NULL, prim);
     const unsigned all = (1u << batch->count) - 1;
-    R(close_points)(beam, batch->from, R(batch_blocked)(batch, prim, beam->tile->position, sides, all));
+    R(close_points)
+    (beam, batch->from,
+     R(decide_blocked)(&batch->args, prim, beam->tile->position, 0, sides, batch->own, all));
     batch->count = 0;
     batch->own = 0;
     batch->back = 0;
@@ -234,7 +210,6 @@ static void R(occlude_point)(const glint_occlude_args *args)
     R(shadow_tile) tile;
     R(shadow_group) group;
     group.last_blocker = GLINT_MISS;
-    group.shafts_failed = 0;
     R(begin_shadows)(args, args->lit[0], &tile);
     for (uint32_t g = 0; g < args->group_count; g++) {
         out[g] = args->lit[0][g];
@@ -247,16 +222,10 @@ static void R(occlude_point)(const glint_occlude_args *args)
         R(occlude_many)(&tile, &group);
         return;
     }
-    uint32_t near[GLINT_TILE_GROUPS];
-    R(find_near)(&tile, &group, near);
     for (uint32_t g = 0; g < args->group_count; g++) {
-        unsigned unoccluded = out[g];
-        if (!near[g])
-            continue;
         R(begin_group)(g, &group);
-        for (unsigned bits = near[g]; bits && unoccluded; bits &= bits - 1)
-            unoccluded &= ~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(bits)], &group, unoccluded);
-        out[g] = (uint16_t)unoccluded;
+        for (int n = 0; n < tile.count && out[g]; n++)
+            out[g] &= (uint16_t)~R(blocked_by)(&tile, tile.occluders[n], &group, out[g]);
     }
 }
 
