@@ -5,7 +5,7 @@
 
 #define PATH_SIZE 32
 
-static void fetch(lua_State *L, const char *name, int index)
+void glintL_many_fetch(lua_State *L, const char *name, int index)
 {
     lua_pushstring(L, name);
     lua_rawget(L, 1);
@@ -67,7 +67,7 @@ static void check_size(lua_State *L, const glintL_many *many, size_t expected)
 
 const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t count, size_t material_count)
 {
-    fetch(L, "index", many->index);
+    glintL_many_fetch(L, "index", many->index);
     if (lua_isnil(L, many->index) && material_count < 2)
         return NULL;
     if (material_count == 0)
@@ -87,8 +87,8 @@ glint_material **glintL_many_prepare(lua_State *L, const glintL_many *many, size
     char path[PATH_SIZE];
     size_t count = 1;
     snprintf(path, sizeof path, "%s.materials", many->object);
-    fetch(L, "material", many->material);
-    fetch(L, "materials", many->materials);
+    glintL_many_fetch(L, "material", many->material);
+    glintL_many_fetch(L, "materials", many->materials);
     const bool one = !lua_isnil(L, many->material);
     *material_count = 0;
     if (one && !lua_isnil(L, many->materials))

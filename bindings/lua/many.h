@@ -14,6 +14,8 @@ typedef struct glintL_many {
     int kept; ///< position of the list that retains the materials; nil without materials
 } glintL_many;
 
+/// Copies a field of the constructor's table to its position on the stack.
+void glintL_many_fetch(lua_State *L, const char *name, int index);
 /// Counts the materials, allocates their pointers, and makes the list that retains them. NULL: there are none.
 glint_material **glintL_many_prepare(lua_State *L, const glintL_many *many, size_t *material_count);
 /// Returns the materials' numbers, from 0, of `count` things. NULL: all have the first material.

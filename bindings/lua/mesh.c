@@ -80,13 +80,6 @@ static const glintL_many MANY = { .object = "mesh",
                                   .pointers = POINTERS,
                                   .kept = KEPT };
 
-static void fetch(lua_State *L, const char *name, int index)
-{
-    lua_pushstring(L, name);
-    lua_rawget(L, ARGUMENT);
-    lua_replace(L, index);
-}
-
 // ---- Vertices, normals and coordinates ----
 
 // The form of a list's entries: x, y, z, or u, v.
@@ -197,7 +190,7 @@ static void read_format(lua_State *L, arguments *a)
     bool packed = false;
     for (int index = VERTICES; index <= UV; index++)
         packed = packed || (index != FACES && lua_type(L, index) == LUA_TSTRING);
-    fetch(L, "format", OTHER);
+    glintL_many_fetch(L, "format", OTHER);
     if (packed) {
         glintL_read_field(L, OTHER, "mesh", &field, a);
         a->format++;
@@ -346,10 +339,10 @@ static const uint32_t *number_corners(lua_State *L, const arguments *a, const ch
 
 static void read_arrays(lua_State *L, arguments *a)
 {
-    fetch(L, "vertices", VERTICES);
-    fetch(L, "faces", FACES);
-    fetch(L, "normals", NORMALS);
-    fetch(L, "uv", UV);
+    glintL_many_fetch(L, "vertices", VERTICES);
+    glintL_many_fetch(L, "faces", FACES);
+    glintL_many_fetch(L, "normals", NORMALS);
+    glintL_many_fetch(L, "uv", UV);
     read_format(L, a);
     a->desc.vertices = read_points(L, a, VERTICES, &VERTEX, VERTEX_BUFFER, &a->desc.vertex_count);
     read_faces(L, a);
@@ -425,7 +418,7 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     if (lua_type(L, OTHER) != LUA_TSTRING)
         glintL_refuse(L, OTHER, "mesh.file", "name of a file");
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        fetch(L, arrays[i], VERTICES);
+        glintL_many_fetch(L, arrays[i], VERTICES);
         if (!lua_isnil(L, VERTICES))
             glintL_error(L, "mesh: file or %s expected, got both", arrays[i]);
     }
@@ -462,8 +455,8 @@ int glintL_new_mesh(lua_State *L)
     glint_error error;
     glintL_box *box = begin(L);
     glintL_read_table(L, ARGUMENT, "mesh", FIELDS, &a, false);
-    fetch(L, "material", MATERIAL);
-    fetch(L, "file", OTHER);
+    glintL_many_fetch(L, "material", MATERIAL);
+    glintL_many_fetch(L, "file", OTHER);
     if (!lua_isnil(L, OTHER)) {
         check_loaded(L, &error, load(L, &a, &shape, &error));
     } else {
@@ -484,7 +477,7 @@ int glintL_new_sphere_mesh(lua_State *L)
     glint_error error;
     glintL_box *box = begin(L);
     glintL_read_table(L, ARGUMENT, "sphere_mesh", SPHERE_FIELDS, &a, false);
-    fetch(L, "material", MATERIAL);
+    glintL_many_fetch(L, "material", MATERIAL);
     read_material(L, "sphere_mesh.material", &a);
     glintL_check_status(L, "sphere_mesh", &error,
                         glint_sphere_mesh_create(a.center, a.radius, a.segments, &a.desc, &shape, &error));

@@ -39,14 +39,6 @@ static const glintL_many MANY = { .object = "spheres",
                                   .pointers = POINTERS,
                                   .kept = KEPT };
 
-// Copies a field of the argument to its position on the stack.
-static void fetch(lua_State *L, const char *name, int index)
-{
-    lua_pushstring(L, name);
-    lua_rawget(L, ARGUMENT);
-    lua_replace(L, index);
-}
-
 static void read_format(lua_State *L, arguments *a)
 {
     static const glintL_field field = {
@@ -55,7 +47,7 @@ static void read_format(lua_State *L, arguments *a)
         .offset = offsetof(arguments, format),
         .names = FORMATS + 1,
     };
-    fetch(L, "format", FORMAT);
+    glintL_many_fetch(L, "format", FORMAT);
     if (lua_isstring(L, DATA)) {
         glintL_read_field(L, FORMAT, "spheres", &field, a);
         a->format = a->format == 0 ? FORMAT_F32 : FORMAT_F64;
@@ -97,7 +89,7 @@ static void read_list(lua_State *L, arguments *a)
 
 static void read_data(lua_State *L, arguments *a)
 {
-    fetch(L, "data", DATA);
+    glintL_many_fetch(L, "data", DATA);
     if (lua_type(L, DATA) != LUA_TSTRING && !lua_istable(L, DATA))
         glintL_refuse(L, DATA, "spheres.data", "flat table or packed string of x, y, z, radius");
     read_format(L, a);
