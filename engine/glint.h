@@ -1239,8 +1239,8 @@ typedef struct glint_slope {
 /// viewer, as seen by the eye, in mirrors and through glass. Rays too weak to be seen (2^-20 of linear light per
 /// sample) are not followed. Slopes of objects outside the scene are ignored. The fields that may have slopes:
 ///
-///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0,
-///             ior, absorption; for fields that programs compute, only with built-in models
+///   material  every number and colour; mirror and transmission where they are above 0; for fields that programs
+///             compute, only with built-in models
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
 ///             exponent, radiance
 ///   scene     ambient, background, depth_cue_color, depth_cue_near, depth_cue_far

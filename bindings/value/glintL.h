@@ -333,8 +333,8 @@ bool glintL_is_given(lua_State *L, const char *name);
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
 /// Lists a variant of a class in glint._fields(), including the methods of every object.
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
-/// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, default } for each field,
-/// empty if the object has no table in the engine.
+/// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, takes_variable, default } for
+/// each field, empty if the object has no table in the engine.
 int glintL_list_rows(lua_State *L);
 void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< adds a variant to that list
 /// Pushes the result of glint._fields(): variant -> name -> "field" or "method".

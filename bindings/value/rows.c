@@ -55,7 +55,7 @@ static void push_row(lua_State *L, const glintL_field *field)
         luaL_addstring(&type, takers[i]);
     }
     luaL_pushresult(&type);
-    lua_createtable(L, 0, 8);
+    lua_createtable(L, 0, 9);
     lua_insert(L, -2);
     lua_setfield(L, -2, "type");
     set_text(L, "name", field->name);
@@ -64,6 +64,8 @@ static void push_row(lua_State *L, const glintL_field *field)
     set_text(L, "follows", field->follows);
     lua_pushboolean(L, field->required);
     lua_setfield(L, -2, "required");
+    lua_pushboolean(L, (field->takes & GLINT_TAKES_VARIABLE) != 0);
+    lua_setfield(L, -2, "takes_variable");
     push_default(L, field);
     lua_setfield(L, -2, "default");
     if (field->type == GLINT_TYPE_TABLE)

@@ -165,20 +165,57 @@ function tests.area_lights_against_differences()
   end, 10, 1e-1)
 end
 
+-- Returns how far the derivative by a scene's number `at` is from a difference, and the derivative's largest value. The
+-- distance is the 98th percentile: shadows have edges.
+local function away(make, at, h)
+  local image = render(make(glint.variable("p", at)), "d:p")
+  local high, low = render(make(at + h), "beauty"), render(make(at - h), "beauty")
+  local list, most, distances = {}, 0, {}
+  each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+  each(image, "d:p", image, "d:p", function(d)
+    distances[#distances + 1] = math.abs(d - list[#distances + 1])
+    most = math.max(most, math.abs(d))
+  end)
+  table.sort(distances)
+  return distances[#distances * 49 // 50], most
+end
+
+-- Tests each row of a material that takes a variable: in the materials that give the field, or with its default.
+function tests.every_field_of_a_material()
+  local given = {}
+  local materials = {
+    { diffuse = 0.4, ambient = 0.3, specular = 0.5, shininess = 9 },
+    { diffuse = 0.3, model = "cook_torrance", specular = 0.7, roughness = 0.4, f0 = 0.3 },
+    { diffuse = 0.2, specular = 0.5, shininess = 5, mirror = 0.3, transmission = 0.6, ior = 1.4, absorption = 0.3 },
+    { diffuse = 0.5, specular = 0.4, shininess = 7, opacity = 0.6 },
+  }
+  for _, fields in ipairs(materials) do
+    for name in pairs(fields) do given[name] = true end
+  end
+  for _, row in ipairs(glint._rows "material") do
+    local seen = 0
+    for i, fields in ipairs(row.takes_variable and materials or {}) do
+      local at = fields[row.name] or not given[row.name] and row.default
+      local function make(x)
+        local copy = { [row.name] = x }
+        for name, value in pairs(fields) do copy[name] = copy[name] or value end
+        local lamp = glint.point_light { position = { 2, 4, 3 }, shadows = false }
+        return scene_of(lamp, { material = glint.material(copy), ambient = 0.3, background = 0.2 })
+      end
+      if at then
+        local worst, most = away(make, at, 1e-2)
+        check(worst < 2e-3 * math.max(most, 1e-3), "material %d by %s: off by %.2g of %.2g", i, row.name, worst, most)
+        seen = math.max(seen, most)
+      end
+    end
+    check(seen > 0 or not row.takes_variable, "nothing depends on %s", row.name)
+  end
+end
+
 -- Tests derivatives next to patterns whose results they do not change.
 function tests.beside_patterns_against_differences()
   local function compare(name, make)
-    local at, h = 2, 1e-2
-    local image = render(make(glint.variable("p", at)), "d:p")
-    local high, low = render(make(at + h), "beauty"), render(make(at - h), "beauty")
-    local list, most, distances = {}, 0, {}
-    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
-    each(image, "d:p", image, "d:p", function(d)
-      distances[#distances + 1] = math.abs(d - list[#distances + 1])
-      most = math.max(most, math.abs(d))
-    end)
-    table.sort(distances) -- takes the 98th percentile: shadows have edges
-    local worst = distances[#distances * 49 // 50]
+    local worst, most = away(make, 2, 1e-2)
     check(most > 0 and worst < 1e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
   end
   local wave = glint.pattern(function(p) return 0.4 + 0.3 * glint.sin(5 * p.y) end)
