@@ -927,7 +927,8 @@ typedef enum glint_overlay_kind {
         ///< `box`: three of its edges as the camera sees them, with numbers along them
     GLINT_OVERLAY_ARROW, ///< a line between two points of the world, with a head at `to`; `text` is its label
     GLINT_OVERLAY_LINE, ///< the same as an arrow, but without a head; its label is next to its middle
-    GLINT_OVERLAY_ARC ///< the angle between the directions `from` and `to` at `point`; `text` is its label
+    GLINT_OVERLAY_ARC, ///< the angle between the directions `from` and `to` at `point`; `text` is its label
+    GLINT_OVERLAY_CHART ///< curves over a grid, with numbers and names along two axes; `text` is its title
 } glint_overlay_kind;
 
 /// What is drawn of the part of an arrow, a line or an arc that lies behind surfaces. Surfaces count at any opacity.
@@ -956,6 +957,32 @@ const uint32_t *glint_colormap_table(glint_colormap map);
 /// The direction of a colour bar: from bottom to top, or from left to right.
 typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orientation;
 
+#define GLINT_CURVES_MAX 16 ///< most curves of a chart
+#define GLINT_CHART_TEXT_SIZE 128 ///< bytes of the label of a curve or the name of an axis, with the ending NUL
+
+/// A curve of a chart: straight lines from point to point. Pointers are borrowed for the call.
+typedef struct glint_curve {
+    const double *x, *y; ///< finite. Where one of them is NaN, the line has a gap; at least one point is not a gap
+    size_t count; ///< number of points, 1 .. 1000000
+    const char *label; ///< UTF-8, one line, next to the end of the curve; "": none
+    bool has_color; ///< false: a colour for the curve's number
+    double color[3]; ///< linear RGB, finite, >= 0
+    bool has_width; ///< false: about a seventh of the letters' size
+    double width; ///< thickness, points, 0 .. 1000; 0: no line; otherwise at least a pixel
+    bool has_dots; ///< true: a dot at each point. A point between two gaps always has one
+} glint_curve;
+
+/// The curves of a chart. Immutable, reference counted; any thread.
+typedef struct glint_chart glint_chart;
+/// Makes a chart from a copy of 1 .. GLINT_CURVES_MAX curves. GLINT_ERR_INVALID names the curve and its field.
+glint_status glint_chart_create(const glint_curve *curves, size_t count, glint_chart **out, glint_error *error);
+/// Takes another reference; returns its argument.
+glint_chart *glint_chart_retain(glint_chart *chart);
+/// Releases a reference; the last one frees the chart. NULL: nothing.
+void glint_chart_release(glint_chart *chart);
+/// Returns curve number `i`, from 0, whose pointers are valid as long as the chart; NULL: there is none.
+const glint_curve *glint_chart_curve(const glint_chart *chart, size_t i);
+
 #define GLINT_OVERLAY_TEXT_SIZE 384 ///< bytes of an overlay's text, with the ending NUL
 #define GLINT_OVERLAY_TICKS_MAX 16 ///< most numbers next to a colour bar
 #define GLINT_AXIS_NAME_SIZE 16 ///< bytes of an axis's name, with the ending NUL
@@ -968,7 +995,7 @@ typedef struct glint_overlay_desc {
     /// are wider than the picture are broken at blanks
     char text[GLINT_OVERLAY_TEXT_SIZE];
     /// Position as a fraction of the free space inside the margin: 0 is left or top, 1 right or bottom. Default:
-    /// label {0, 0}, colour bar {1, 0.5}, axes {0, 1}
+    /// label {0, 0}, colour bar {1, 0.5}, axes {0, 1}, chart {0.5, 0.5}
     double at[2];
     bool has_position; ///< true: `position` is used instead of `at`
     /// Upper left corner, in pixels from the picture's upper left corner; finite, may lie outside
@@ -979,10 +1006,10 @@ typedef struct glint_overlay_desc {
     /// Distance to the picture's border; for a label at a point of the world, distance to that point; points,
     /// 0 .. 10000
     double margin;
-    /// Colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1. Not tone-mapped
+    /// Colour of letters and lines, linear RGB, finite, >= 0; above 1 counts as 1; default 1, chart 0.02. Not tone-mapped
     double color[3];
-    bool has_background; ///< false: no rectangle is drawn behind the overlay
-    double background[3]; ///< colour of the rectangle behind the overlay; linear RGB like `color`
+    bool has_background; ///< false: no rectangle is drawn behind the overlay; default false, chart true
+    double background[3]; ///< colour of the rectangle behind the overlay; linear RGB like `color`; chart: default 1
     double opacity; ///< opacity of the rectangle, 0 .. 1; default 1
     bool has_length; ///< false: colour bar 10 times `size`, axes 2.5 times
     /// Colour bar: length of the bar; axes: length of an axis parallel to the picture; points, 1 .. 10000
@@ -1021,6 +1048,13 @@ typedef struct glint_overlay_desc {
     bool has_width; ///< arrow, line, arc. false: the width is an eighth of `size`
     double width; ///< thickness, points, 0 .. 10000; at least one pixel is drawn
     glint_hidden hidden; ///< arrow, line, arc: how the hidden part is drawn; default draw
+    glint_chart *chart; ///< chart: its curves; retained, not NULL
+    char titles[2][GLINT_CHART_TEXT_SIZE]; ///< chart: names of x and y; "": none
+    bool is_log_axis[2]; ///< chart: logarithmic x, y; all their numbers are above 0
+    bool has_range[2]; ///< chart. false: the range of the points, for y with a little space
+    double range[2][2]; ///< chart: first and last number along x and y; finite, different
+    bool has_extent; ///< chart. false: the picture inside the margin
+    double extent[2]; ///< chart: width and height with numbers and names, points, 1 .. 10000
     char name[GLINT_NAME_SIZE]; ///< name for messages; "": none
 } glint_overlay_desc;
 

@@ -1,7 +1,7 @@
-// glint.label, glint.colorbar, glint.axes, glint.arrow, glint.line, glint.arc
+// glint.label, glint.colorbar, glint.axes, glint.arrow, glint.line, glint.arc, glint.chart
 #include <string.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/chart.h"
 
 typedef glint_overlay_desc desc_type;
 
@@ -319,13 +319,19 @@ static void push_map(lua_State *L, const void *desc)
 
 static const char *const SCALES[] = { "linear", "log", NULL };
 
+// Reads "linear" or "log" for the field `name`; returns whether it is "log".
+static bool read_log(lua_State *L, int index, const char *object, const char *name)
+{
+    const glintL_field scale = { .name = name, .type = GLINT_TYPE_CHOICE, .names = SCALES };
+    unsigned which;
+    glintL_read_field(L, index, object, &scale, &which);
+    return which == 1;
+}
+
 static void read_scale(lua_State *L, int index, const char *path, void *desc)
 {
-    static const glintL_field scale = { .name = "scale", .type = GLINT_TYPE_CHOICE, .names = SCALES };
-    unsigned which;
     (void)path;
-    glintL_read_field(L, index, "colorbar", &scale, &which);
-    ((desc_type *)desc)->is_log = which == 1;
+    ((desc_type *)desc)->is_log = read_log(L, index, "colorbar", "scale");
 }
 
 static void push_scale(lua_State *L, const void *desc) { lua_pushstring(L, SCALES[((const desc_type *)desc)->is_log]); }
@@ -381,6 +387,63 @@ static const glintL_field AXES_FIELDS[] = {
     { .name = NULL },
 };
 
+// The x of a chart is read with the series.
+static void read_x(lua_State *L, int index, const char *path, void *desc)
+{
+    (void)index, (void)desc;
+    if (!lua_istable(L, 1))
+        glintL_error(L, "%s: only glint.chart { ... } takes x; assign series with their own x", path);
+}
+
+static void push_nil(lua_State *L, const void *desc)
+{
+    (void)desc;
+    lua_pushnil(L);
+}
+
+#define AXIS(i, letter) \
+    static void read_title_##letter(lua_State *L, int index, const char *path, void *desc) \
+    { \
+        copy_text(L, index, path, ((desc_type *)desc)->titles[i], GLINT_CHART_TEXT_SIZE); \
+    } \
+    static void push_title_##letter(lua_State *L, const void *desc) { lua_pushstring(L, ((const desc_type *)desc)->titles[i]); } \
+    static void read_range_##letter(lua_State *L, int index, const char *path, void *desc) \
+    { \
+        read_pair(L, index, path, "{first, last}", ((desc_type *)desc)->range[i]); \
+    } \
+    static void push_range_##letter(lua_State *L, const void *desc) { push_pair(L, ((const desc_type *)desc)->range[i], #letter "_range"); } \
+    static void read_scale_##letter(lua_State *L, int index, const char *path, void *desc) \
+    { \
+        ((desc_type *)desc)->is_log_axis[i] = read_log(L, index, "chart", #letter "_scale"); \
+        (void)path; \
+    } \
+    static void push_scale_##letter(lua_State *L, const void *desc) { lua_pushstring(L, SCALES[((const desc_type *)desc)->is_log_axis[i]]); }
+
+AXIS(0, x)
+AXIS(1, y)
+
+static void read_extent(lua_State *L, int index, const char *path, void *desc)
+{
+    read_pair(L, index, path, "{width, height} in points", ((desc_type *)desc)->extent);
+}
+
+static void push_extent(lua_State *L, const void *desc) { push_pair(L, ((const desc_type *)desc)->extent, "extent"); }
+
+static const glintL_field CHART_FIELDS[] = {
+    { .name = "series", GLINTL_CUSTOM(glintL_chart_read, glintL_chart_push), .required = true },
+    { .name = "x", GLINTL_CUSTOM(read_x, push_nil) },
+    { .name = "title", GLINTL_CUSTOM(read_text, push_text) },
+    { .name = "x_label", GLINTL_CUSTOM(read_title_x, push_title_x) },
+    { .name = "y_label", GLINTL_CUSTOM(read_title_y, push_title_y) },
+    { .name = "x_scale", GLINTL_CUSTOM(read_scale_x, push_scale_x) },
+    { .name = "y_scale", GLINTL_CUSTOM(read_scale_y, push_scale_y) },
+    { .name = "x_range", GLINTL_CUSTOM(read_range_x, push_range_x), .set_offset = AT(has_range[0]) },
+    { .name = "y_range", GLINTL_CUSTOM(read_range_y, push_range_y), .set_offset = AT(has_range[1]) },
+    { .name = "extent", GLINTL_CUSTOM(read_extent, push_extent), .set_offset = AT(has_extent) },
+    EVERY_OVERLAY,
+    { .name = NULL },
+};
+
 static const glintL_field LINE_FIELDS[] = {
     { .name = "from", .type = GLINT_TYPE_VECTOR, .offset = AT(from), .required = true },
     { .name = "to", .type = GLINT_TYPE_VECTOR, .offset = AT(to), .required = true },
@@ -406,6 +469,7 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_OVERLAY_ARROW] = { .name = "arrow", .fields = LINE_FIELDS },
     [GLINT_OVERLAY_LINE] = { .name = "line", .fields = LINE_FIELDS },
     [GLINT_OVERLAY_ARC] = { .name = "arc", .fields = ARC_FIELDS },
+    [GLINT_OVERLAY_CHART] = { .name = "chart", .fields = CHART_FIELDS },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_overlay_get(object)->kind]; }

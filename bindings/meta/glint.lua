@@ -451,6 +451,34 @@ function glint.label(fields) end
 ---@return glint.colorbar
 function glint.colorbar(fields) end
 
+---@class glint.series
+---@field y number[]|fun(x: number): number  one number for each x, or a function that is called with each x when the series is read. NaN is a gap
+---@field x? number[]  Default: the chart's x; without one 1, 2, 3 ...
+---@field label? string  text at the end of the curve, in its colour, at most 127 bytes. Default ""
+---@field color? glint.color  Default: one of eight colours, by the series' number
+---@field width? number  thickness of the line, points, 0 .. 1000; 0: no line. Default nil: about a seventh of `size`
+---@field dots? boolean  a dot at each point. Default false
+
+---@class glint.chart_fields: glint.overlay_fields
+---@field series glint.series[]  1 .. 16 curves; reads as a copy
+---@field x? number[]  the x of all series that have none of their own; only in glint.chart { ... }
+---@field title? string  text above the curves, as in a label. Default ""
+---@field x_label? string  name of the horizontal axis, at most 127 bytes. Default ""
+---@field y_label? string  name of the vertical axis. Default ""
+---@field x_scale? "linear"|"log"  with "log" every x is above 0. Default "linear"
+---@field y_scale? "linear"|"log"  Default "linear"
+---@field x_range? number[]  {first, last}; curves are cut there. Default nil: the range of the points
+---@field y_range? number[]  {first, last}. Default nil: the range of the points, with a little space
+---@field extent? number[]  {width, height} of the chart with its numbers and names, points. Default nil: the picture inside the margin
+
+--- Curves over a grid, with numbers and names along two axes. Each label is at the end of its curve. Default `color`
+--- 0.02, `background` 1 and `at` "center": a chart on white paper. A scene of a chart alone is a figure of its own.
+---@class glint.chart: glint.chart_fields, glint.object
+
+---@param fields glint.chart_fields
+---@return glint.chart
+function glint.chart(fields) end
+
 ---@class glint.axes_fields: glint.overlay_fields
 ---@field labels? string[]  names of x, y and z, at most 15 bytes each. Default {"x", "y", "z"}
 ---@field length? number  length of an axis parallel to the picture plane, points. Default nil: 2.5 times `size`

@@ -311,7 +311,7 @@ typedef struct glintL_class {
 /// The members of the class that point to these functions.
 #define GLINTL_FUNCTION_MEMBERS .get = get, .set = set, .retain = retain, .release = release, .create = create
 
-#define GLINTL_DESC_SIZE 2304
+#define GLINTL_DESC_SIZE 2816
 
 /// Returns the class of a type from the metatable made by glintL_open_class.
 const glintL_class *glintL_class_of(lua_State *L, const char *type);

@@ -7,7 +7,6 @@
 #define BAR 0.9 ///< thickness of the bar, in font sizes
 #define TICK 0.3 ///< length of a mark, in font sizes
 #define GAP 0.3 ///< gap between a mark and its number, in font sizes
-#define WANTED 4 ///< smallest number of steps between round numbers
 #define COLORS 256
 
 typedef struct bar {
@@ -18,65 +17,14 @@ typedef struct bar {
 
 static bool is_horizontal(const glint_layout *layout) { return layout->desc->orientation == GLINT_HORIZONTAL; }
 
-/// Returns the smallest distance between the middles of neighbouring numbers, in pixels.
-static double pitch(const glint_layout *layout, const bar *b)
-{
-    return is_horizontal(layout) ? b->marks.widest + layout->em : layout->typeface.height * 1.25;
-}
-
-/// Adds a number to the marks if the number lies on the bar.
-static void add_mark(const glint_layout *layout, bar *b, double value)
-{
-    const glint_overlay_desc *desc = layout->desc;
-    const int before = b->marks.count;
-    glint_marks_add(&b->marks, &layout->typeface, desc->low, desc->high, value, -1);
-    if (desc->is_log && b->marks.count > before)
-        b->marks.of[before].share = glint_log(value / desc->low) / glint_log(desc->high / desc->low);
-}
-
-/// Marks the powers of ten. If there are few of them, also marks two and five times each; if there are many, marks
-/// only every second, third and so on; if there are none, marks the ends of the bar.
-static void find_powers(const glint_layout *layout, bar *b)
-{
-    static const double factors[] = { 1, 2, 5 };
-    const glint_overlay_desc *desc = layout->desc;
-    const double low = fmin(desc->low, desc->high), high = fmax(desc->low, desc->high), ten = glint_log(10);
-    const int first = (int)ceil(glint_log(low) / ten - 1e-9), last = (int)floor(glint_log(high) / ten + 1e-9);
-    const double decades = glint_log(high / low) / ten;
-    const int factor_count = last - first < 2 ? 3 : 1;
-    int step = (last - first) / (GLINT_OVERLAY_TICKS_MAX - 1) + 1;
-    b->marks.widest = glint_typeface_width(&layout->typeface, "1e+00", 5);
-    while (step < last - first && step / decades * layout->length < pitch(layout, b))
-        step++;
-    b->marks.widest = 0;
-    for (int e = first - 1; e <= last; e += factor_count == 3 || e < first ? 1 : step)
-        for (int i = 0; i < factor_count; i++) {
-            const double value = factors[i] * glint_pow(10, e);
-            if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9))
-                add_mark(layout, b, value);
-        }
-    if (b->marks.count)
-        return;
-    add_mark(layout, b, desc->low);
-    add_mark(layout, b, desc->high);
-}
-
 static void find_marks(const glint_layout *layout, bar *b)
 {
     const glint_overlay_desc *desc = layout->desc;
-    double steps = WANTED, share = 1;
+    const glint_scale scale = { desc->low, desc->high, desc->is_log, is_horizontal(layout), layout->length, layout->em };
+    if (!desc->tick_count)
+        glint_marks_fit(&b->marks, &layout->typeface, &scale);
     for (size_t i = 0; i < desc->tick_count; i++)
-        add_mark(layout, b, desc->ticks[i]);
-    if (desc->tick_count)
-        return;
-    if (desc->is_log) {
-        find_powers(layout, b);
-        return;
-    }
-    do {
-        share = glint_marks_round(&b->marks, &layout->typeface, desc->low, desc->high, steps);
-        steps /= 2;
-    } while (share * layout->length < pitch(layout, b) && steps > 0.5);
+        glint_marks_add(&b->marks, &layout->typeface, &scale, desc->ticks[i], -1);
 }
 
 static bar make_bar(const glint_layout *layout)

@@ -72,7 +72,7 @@ static void check_position(const check *c)
 {
     const glint_layout *l = c->layout;
     const int sides[2] = { l->overlays->width, l->overlays->height };
-    const char *it = l->desc->kind >= GLINT_OVERLAY_ARROW ? "its label" : "it";
+    const char *it = l->desc->kind >= GLINT_OVERLAY_ARROW && l->desc->kind != GLINT_OVERLAY_CHART ? "its label" : "it";
     char message[300];
     int beyond = 0, length = 0;
     for (int i = 0; i < 2; i++) {
@@ -122,6 +122,21 @@ static void check_pointer(const check *c)
     }
 }
 
+/// Warns about letters of a chart that the font lacks, and about a chart without space for its curves.
+static void check_chart(const check *c)
+{
+    const glint_overlay_desc *desc = c->layout->desc;
+    const glint_curve *curve;
+    for (int i = 0; i < 2; i++)
+        check_letters(c, desc->titles[i]);
+    for (size_t i = 0; (curve = glint_chart_curve(desc->chart, i)) != NULL; i++)
+        check_letters(c, curve->label);
+    if (glint_chart_fits(c->layout))
+        check_position(c);
+    else
+        warn(c, "there is no space for its curves, so it is not drawn; use a larger picture or extent, or a smaller size");
+}
+
 glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, void (*warns)(void *context, const char *message),
                                   void *context, glint_error *error)
 {
@@ -144,6 +159,8 @@ glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, vo
         glint_layout_place(&layout, dpi);
         if (glint_overlay_points(desc))
             check_pointer(&c);
+        else if (desc->kind == GLINT_OVERLAY_CHART)
+            check_chart(&c);
         else
             check_position(&c);
     }

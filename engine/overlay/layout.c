@@ -47,8 +47,8 @@ static void draw_label(const glint_layout *layout, int x, int y)
 
 glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_ink *ink)
 {
-    static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_ARC] = 0 };
-    glint_layout layout = { .overlays = overlays, .desc = desc, .ink = ink };
+    static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_ARC] = 0, [GLINT_OVERLAY_CHART] = 0 };
+    glint_layout layout = { .overlays = overlays, .desc = desc, .dpi = dpi, .ink = ink };
     layout.em = desc->has_size ? glint_layout_pixels(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
     layout.typeface = glint_typeface_open(ink->letters, layout.em);
     if (desc->kind != GLINT_OVERLAY_LABEL)
@@ -97,13 +97,15 @@ static void keep_place(glint_layout *layout)
 void glint_layout_place(glint_layout *layout, double dpi)
 {
     static void (*const measures[])(glint_layout *) = { measure_label, glint_colorbar_measure, glint_axes_measure,
-                                                        measure_label, measure_label, measure_label };
+                                                        measure_label, measure_label, measure_label, glint_chart_measure };
     const glint_overlay_desc *desc = layout->desc;
     const double margin = desc->has_margin ? glint_layout_pixels(desc->margin, dpi) : layout->em / 2;
     const int sides[2] = { layout->overlays->width, layout->overlays->height };
     const bool points = glint_overlay_points(desc);
     if (points || (desc->kind == GLINT_OVERLAY_LABEL && !desc->has_position))
         wrap(layout, margin);
+    for (int i = 0; i < 2; i++)
+        layout->extent[i] = desc->has_extent ? glint_layout_pixels(desc->extent[i], dpi) : sides[i] - 2 * margin;
     measures[desc->kind](layout);
     layout->size[0] = layout->width + 2 * layout->padding;
     layout->size[1] = layout->height + 2 * layout->padding;
@@ -118,7 +120,7 @@ void glint_layout_place(glint_layout *layout, double dpi)
 static void draw(glint_layout *layout, double dpi)
 {
     static void (*const draws[])(const glint_layout *, int, int) = { draw_label, glint_colorbar_draw, glint_axes_draw,
-                                                                     draw_label, draw_label,          draw_label };
+                                                                     draw_label, draw_label, draw_label, glint_chart_draw };
     const glint_overlay_desc *desc = layout->desc;
     const int *corner = layout->corner, *size = layout->size;
     if (desc->kind == GLINT_OVERLAY_AXES && desc->has_box) {

@@ -15,8 +15,10 @@ typedef struct glint_layout {
     glint_place *place; ///< of this one
     const glint_hidden_parts *hidden; ///< hidden parts of the overlay's curve; NULL: none
     glint_typeface typeface;
+    double dpi; ///< pixels per inch; 0: not given
     double em; ///< font size, pixels
     double length; ///< length of a colour bar or an axis, pixels
+    double extent[2]; ///< width and height of a chart, pixels
     int width, height; ///< size of everything drawn, without the background; pixels
     int corner[2], size[2]; ///< position and size of the overlay with its background in the picture; pixels
     int padding; ///< padding between the overlay and the edge of its background, pixels
@@ -56,6 +58,10 @@ void glint_layout_line(const glint_layout *layout, const double from[2], const d
 
 void glint_colorbar_measure(glint_layout *layout);
 void glint_colorbar_draw(const glint_layout *layout, int x, int y);
+void glint_chart_measure(glint_layout *layout);
+/// Returns whether a measured chart has space for its curves.
+bool glint_chart_fits(const glint_layout *layout);
+void glint_chart_draw(const glint_layout *layout, int x, int y);
 void glint_axes_measure(glint_layout *layout);
 void glint_axes_draw(const glint_layout *layout, int x, int y);
 /// Draws axes at a box. The box determines their position.

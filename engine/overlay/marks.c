@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#define WANTED 4 ///< smallest number of steps between round numbers
 #define NARROWEST 1e-290 ///< narrower ranges have steps below the smallest power of ten
 
 /// Returns the largest step of 1, 2, 2.5 or 5 times a power of ten that is at most `most`, > 0 and finite. *decimals:
@@ -20,12 +21,19 @@ static double round_step(double most, int *decimals)
     return steps[i] * power;
 }
 
-void glint_marks_add(glint_marks *marks, const glint_typeface *typeface, double first, double last, double value, int decimals)
+double glint_scale_share(const glint_scale *scale, double value)
+{
+    if (scale->is_log)
+        return glint_log(value / scale->first) / glint_log(scale->last / scale->first);
+    return (value - scale->first) / (scale->last - scale->first);
+}
+
+void glint_marks_add(glint_marks *marks, const glint_typeface *typeface, const glint_scale *scale, double value, int decimals)
 {
     glint_mark *m = &marks->of[marks->count];
     if (marks->count == GLINT_OVERLAY_TICKS_MAX)
         return;
-    m->share = (value - first) / (last - first);
+    m->share = glint_scale_share(scale, value);
     value = value == 0 ? 0 : value; // turns -0 into 0
     if (decimals < 0 || decimals > 6 || fabs(value) >= 1e7)
         snprintf(m->text, sizeof m->text, "%.6g", value);
@@ -38,16 +46,63 @@ void glint_marks_add(glint_marks *marks, const glint_typeface *typeface, double 
 
 double glint_marks_round(glint_marks *marks, const glint_typeface *typeface, double first, double last, double steps)
 {
+    const glint_scale scale = { .first = first, .last = last };
     const double low = fmin(first, last), high = fmax(first, last);
     int decimals;
     marks->count = marks->widest = 0;
     if (high - low <= NARROWEST) {
-        glint_marks_add(marks, typeface, first, last, first, -1);
-        glint_marks_add(marks, typeface, first, last, last, -1);
+        glint_marks_add(marks, typeface, &scale, first, -1);
+        glint_marks_add(marks, typeface, &scale, last, -1);
         return 1;
     }
     const double step = round_step((high - low) / steps, &decimals);
     for (double n = ceil(low / step - 1e-9); n * step <= high + 1e-9 * step && n + 1 > n && marks->count < GLINT_OVERLAY_TICKS_MAX; n++)
-        glint_marks_add(marks, typeface, first, last, fmin(fmax(n * step, low), high), decimals);
+        glint_marks_add(marks, typeface, &scale, fmin(fmax(n * step, low), high), decimals);
     return step / (high - low);
+}
+
+/// Returns the smallest distance between the middles of neighbouring numbers, in pixels.
+static double pitch(const glint_marks *marks, const glint_typeface *typeface, const glint_scale *scale)
+{
+    return scale->is_across ? marks->widest + scale->em : typeface->height * 1.25;
+}
+
+/// Marks the powers of ten. If there are few of them, also marks two and five times each; if there are many, marks
+/// only every second, third and so on; if there are none, marks the ends of the scale.
+static void find_powers(glint_marks *marks, const glint_typeface *typeface, const glint_scale *scale)
+{
+    static const double factors[] = { 1, 2, 5 };
+    const double low = fmin(scale->first, scale->last), high = fmax(scale->first, scale->last), ten = glint_log(10);
+    const int first = (int)ceil(glint_log(low) / ten - 1e-9), last = (int)floor(glint_log(high) / ten + 1e-9);
+    const double decades = glint_log(high / low) / ten;
+    const int factor_count = last - first < 2 ? 3 : 1;
+    int step = (last - first) / (GLINT_OVERLAY_TICKS_MAX - 1) + 1;
+    marks->count = 0;
+    marks->widest = glint_typeface_width(typeface, "1e+00", 5);
+    while (step < last - first && step / decades * scale->length < pitch(marks, typeface, scale))
+        step++;
+    marks->widest = 0;
+    for (int e = first - 1; e <= last; e += factor_count == 3 || e < first ? 1 : step)
+        for (int i = 0; i < factor_count; i++) {
+            const double value = factors[i] * glint_pow(10, e);
+            if (value >= low * (1 - 1e-9) && value <= high * (1 + 1e-9))
+                glint_marks_add(marks, typeface, scale, value, -1);
+        }
+    if (marks->count)
+        return;
+    glint_marks_add(marks, typeface, scale, scale->first, -1);
+    glint_marks_add(marks, typeface, scale, scale->last, -1);
+}
+
+void glint_marks_fit(glint_marks *marks, const glint_typeface *typeface, const glint_scale *scale)
+{
+    double steps = WANTED, share = 1;
+    if (scale->is_log) {
+        find_powers(marks, typeface, scale);
+        return;
+    }
+    do {
+        share = glint_marks_round(marks, typeface, scale->first, scale->last, steps);
+        steps /= 2;
+    } while (share * scale->length < pitch(marks, typeface, scale) && steps > 0.5);
 }

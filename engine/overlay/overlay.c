@@ -16,7 +16,7 @@ struct glint_overlay {
 
 #define POINTS_MAX 10000.0
 
-const char *const glint_overlay_kinds[] = { "label", "colorbar", "axes", "arrow", "line", "arc" };
+const char *const glint_overlay_kinds[] = { "label", "colorbar", "axes", "arrow", "line", "arc", "chart" };
 
 glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
 {
@@ -29,6 +29,12 @@ glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
     }
     if (kind == GLINT_OVERLAY_AXES)
         desc.at[1] = 1;
+    desc.has_background = kind == GLINT_OVERLAY_CHART;
+    for (int i = 0; i < 3 && kind == GLINT_OVERLAY_CHART; i++) {
+        desc.at[i > 0] = 0.5;
+        desc.color[i] = 0.02;
+        desc.background[i] = 1;
+    }
     return desc;
 }
 
@@ -206,11 +212,57 @@ static glint_status check_pointer(const glint_overlay_desc *desc, glint_error *e
     return status;
 }
 
+/// Checks that all numbers of an axis of a chart fit its scale. axis: 0 is x, 1 is y.
+static glint_status check_axis(const glint_overlay_desc *desc, int axis, glint_error *error)
+{
+    static const char *const ranges[] = { "x_range", "y_range" };
+    const double *range = desc->range[axis];
+    const glint_curve *c;
+    if (desc->has_range[axis] && !(isfinite(range[1] - range[0]) && range[0] != range[1]))
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: two different numbers expected, got %.15g and %.15g", ranges[axis], range[0],
+                          range[1]);
+    if (!desc->is_log_axis[axis])
+        return GLINT_OK;
+    if (desc->has_range[axis] && !(range[0] > 0 && range[1] > 0))
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: numbers above 0 for a logarithmic axis expected, got %.15g and %.15g",
+                          ranges[axis], range[0], range[1]);
+    for (size_t i = 0; (c = glint_chart_curve(desc->chart, i)) != NULL; i++)
+        for (size_t k = 0; k < c->count; k++)
+            if ((axis ? c->y : c->x)[k] <= 0)
+                return glint_fail(error, GLINT_ERR_INVALID,
+                                  "series[%zu].%c[%zu]: number above 0, or NaN for a gap, for a logarithmic axis expected, got %.15g",
+                                  i + 1, 'x' + axis, k + 1, (axis ? c->y : c->x)[k]);
+    return GLINT_OK;
+}
+
+static glint_status check_chart(const glint_overlay_desc *desc, glint_error *error)
+{
+    static const char *const names[] = { "x_label", "y_label" };
+    const glint_curve *c;
+    glint_status status = GLINT_OK;
+    if (!desc->chart)
+        return glint_fail(error, GLINT_ERR_INVALID, "series: curves expected, got NULL");
+    for (int i = 0; i < 2 && !status; i++) {
+        status = check_drawn(names[i], desc->titles[i], sizeof desc->titles[i], error);
+        if (!status)
+            status = check_axis(desc, i, error);
+        if (!status && desc->has_extent)
+            status = glint_check_range("extent", desc->extent[i], 1, POINTS_MAX, "points 1 .. 10000", error);
+    }
+    for (size_t i = 0; (c = glint_chart_curve(desc->chart, i)) != NULL && !status; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "series[%zu].label", i + 1);
+        status = check_drawn(name, c->label, GLINT_CHART_TEXT_SIZE, error);
+    }
+    return status;
+}
+
 static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 {
-    if ((unsigned)desc->kind > GLINT_OVERLAY_ARC)
+    if ((unsigned)desc->kind > GLINT_OVERLAY_CHART)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such overlay");
-    glint_status status = check_drawn(desc->kind < GLINT_OVERLAY_ARROW ? "text" : "label", desc->text, sizeof desc->text, error);
+    const bool has_text = desc->kind < GLINT_OVERLAY_ARROW || desc->kind == GLINT_OVERLAY_CHART;
+    glint_status status = check_drawn(has_text ? "text" : "label", desc->text, sizeof desc->text, error);
     for (int i = 0; i < 3 && !status; i++)
         status = check_drawn("names", desc->names[i], sizeof desc->names[i], error);
     if (!status)
@@ -230,6 +282,8 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
                                                       "describe");
     if (!status && desc->kind == GLINT_OVERLAY_AXES && desc->has_box)
         status = check_box(desc, error);
+    if (!status && desc->kind == GLINT_OVERLAY_CHART)
+        status = check_chart(desc, error);
     if (!status && glint_overlay_points(desc))
         status = check_pointer(desc, error);
     return status;
@@ -246,6 +300,7 @@ glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay 
     if (!overlay)
         return glint_fail_nomem(error);
     *overlay = (glint_overlay) { .references = 1, .desc = *desc };
+    glint_chart_retain(desc->chart);
     *out = overlay;
     return GLINT_OK;
 }
@@ -257,9 +312,12 @@ glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc 
     if (desc->kind != overlay->desc.kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: an overlay cannot become one of another kind");
     glint_status status = check(desc, error);
-    if (!status)
-        overlay->desc = *desc;
-    return status;
+    if (status)
+        return status;
+    glint_chart_retain(desc->chart);
+    glint_chart_release(overlay->desc.chart);
+    overlay->desc = *desc;
+    return GLINT_OK;
 }
 
 const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay) { return overlay ? &overlay->desc : NULL; }
@@ -273,6 +331,8 @@ glint_overlay *glint_overlay_retain(glint_overlay *overlay)
 
 void glint_overlay_release(glint_overlay *overlay)
 {
-    if (overlay && --overlay->references == 0)
-        free(overlay);
+    if (!overlay || --overlay->references > 0)
+        return;
+    glint_chart_release(overlay->desc.chart);
+    free(overlay);
 }

@@ -1,9 +1,10 @@
-/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs. Internal.
+/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs, charts. Internal.
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key
 ///     layout.c     the position of each; colorbar.c, axes.c, box_axes.c: their parts
-///     marks.c      the round numbers along colour bars and axes
+///     chart.c      charts; curves.c: their curves, which overlays share
+///     marks.c      the round numbers along colour bars, axes and charts
 ///     pointer.c    the curves of arrows, lines and arcs in the picture, and positions for texts next to them
 ///     drawing.c    texts, rectangles and strokes, in the ink of engine/ink
 ///     faults.c     warnings about overlays that the picture cannot show
@@ -51,7 +52,7 @@ extern const char *const glint_overlay_kinds[]; ///< "label", ...
 /// Returns whether an overlay points at a place in the world: an arrow, line, arc, or label at a point.
 static inline bool glint_overlay_points(const glint_overlay_desc *desc)
 {
-    return desc->kind >= GLINT_OVERLAY_ARROW || (desc->kind == GLINT_OVERLAY_LABEL && desc->has_point);
+    return (desc->kind >= GLINT_OVERLAY_ARROW && desc->kind != GLINT_OVERLAY_CHART) || (desc->kind == GLINT_OVERLAY_LABEL && desc->has_point);
 }
 
 /// Projects a point to the picture, in pixels from the upper left corner. Returns the point's distance along the view.

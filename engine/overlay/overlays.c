@@ -1,5 +1,6 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/overlay/curves.h"
 #include "engine/overlay/overlay.h"
 #include "engine/text/letters.h"
 
@@ -51,8 +52,10 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
     overlays->camera = *camera;
     for (size_t i = 0; i < count; i++) {
         const glint_overlay_desc *desc = glint_overlay_get(glint_scene_overlay_at(scene, i));
-        if (shows(desc))
-            overlays->of[overlays->count++] = *desc;
+        if (!shows(desc))
+            continue;
+        overlays->of[overlays->count++] = *desc;
+        glint_chart_retain(desc->chart);
     }
     *out = overlays;
     return GLINT_OK;
@@ -67,10 +70,13 @@ glint_overlays *glint_overlays_copy(const glint_overlays *overlays)
     memcpy(copy, overlays, size);
     atomic_init(&copy->references, 1);
     copy->hidden = calloc(overlays->count, sizeof *copy->hidden);
-    if (copy->hidden)
-        return copy;
-    free(copy);
-    return NULL;
+    if (!copy->hidden) {
+        free(copy);
+        return NULL;
+    }
+    for (size_t i = 0; i < copy->count; i++)
+        glint_chart_retain(copy->of[i].chart);
+    return copy;
 }
 
 glint_overlays *glint_overlays_retain(glint_overlays *overlays)
@@ -86,6 +92,8 @@ void glint_overlays_release(glint_overlays *overlays)
         return;
     for (size_t i = 0; overlays->hidden && i < overlays->count; i++)
         free(overlays->hidden[i].of);
+    for (size_t i = 0; i < overlays->count; i++)
+        glint_chart_release(overlays->of[i].chart);
     free(overlays->hidden);
     free(overlays);
 }
@@ -126,6 +134,20 @@ static glint_key pointer_key(const glint_overlays *overlays, const glint_overlay
     return ADD(key, look);
 }
 
+static glint_key chart_key(const glint_overlay_desc *d, glint_key key)
+{
+    const double look[] = { d->is_log_axis[0], d->is_log_axis[1], d->has_range[0], d->has_range[1], d->has_extent };
+    ADD(key, look);
+    for (int i = 0; i < 2; i++) {
+        key = glint_key_add_string(key, d->titles[i]);
+        if (d->has_range[i])
+            ADD(key, d->range[i]);
+    }
+    if (d->has_extent)
+        ADD(key, d->extent);
+    return glint_chart_key(d->chart, key);
+}
+
 /// Extends the key by the box's corners in the camera's view and the numbers of its axes.
 static glint_key box_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
 {
@@ -149,6 +171,8 @@ glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
             ADD(key, d->is_log);
         if (d->kind == GLINT_OVERLAY_COLORBAR && d->has_colors)
             ADD(key, d->colors);
+        if (d->kind == GLINT_OVERLAY_CHART)
+            key = chart_key(d, key);
         if (glint_overlay_points(d))
             key = pointer_key(overlays, d, key);
         if (d->kind != GLINT_OVERLAY_AXES)

@@ -368,7 +368,7 @@ for script in "$root"/scripts/*.lua; do
     one=${PRELOAD:+-f 1}                   # all frames take a sanitizer minutes
     [ "$name" != fit.lua ] || one=         # needs all of its frames
     [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
-    [[ $name != labels.lua && $name != vectors.lua ]] || size=320x180 # letters of 10 pixels fit
+    [[ $name != labels.lua && $name != vectors.lua && $name != furnace.lua ]] || size=320x180 # letters of 10 pixels fit
     run "$script" --size $size --samples 1 --warnings=error $dialect $one
     result $? "$name"
 done

@@ -116,6 +116,7 @@ static void test_null_of_objects(void **state)
     REFUSES("path", glint_mesh_load(NULL, &mesh, &shape, &error));
     REFUSES("center", glint_sphere_mesh_create(NULL, 1, 8, &mesh, &shape, &error));
     REFUSES("desc", glint_overlay_create(NULL, &(glint_overlay *) { NULL }, &error));
+    REFUSES("curves", glint_chart_create(NULL, 1, &(glint_chart *) { NULL }, &error));
     REFUSES("desc", glint_texture_create(NULL, &(glint_texture *) { NULL }, &error));
     glint_builder *builder = NULL;
     assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, NULL), GLINT_OK);
@@ -237,6 +238,10 @@ static void test_null_of_every_function(void **state)
     NOTHING(glint_overlay_get(NULL));
     NOTHING(glint_overlay_retain(NULL));
     glint_overlay_release(NULL);
+    INVALID(glint_chart_create(NULL, 0, NULL, NULL));
+    NOTHING(glint_chart_curve(NULL, 0));
+    NOTHING(glint_chart_retain(NULL));
+    glint_chart_release(NULL);
     INVALID(glint_scene_create(NULL, NULL));
     INVALID(glint_scene_set(NULL, NULL, NULL));
     NOTHING(glint_scene_get(NULL));

@@ -59,6 +59,7 @@ local FIELDS = {
   arrow = { "from", "to", "label", "width", "hidden", "size", "margin", "color", "background" },
   line = { "from", "to", "label", "width", "hidden", "opacity" },
   arc = { "at", "from", "to", "radius", "label", "width", "hidden" },
+  chart = { "series", "x", "title", "x_label", "y_label", "x_scale", "y_scale", "x_range", "y_range", "extent", "at", "size" },
 }
 -- The functions of the module that may raise a message. Lua's own messages for a programming error are not accepted.
 local function refused(message)
@@ -86,6 +87,7 @@ local GOOD = {
   ambient_occlusion = { samples = 2 }, label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
   arrow = { from = { 0, 0, 0 }, to = { 2, 1, 0 }, label = "a" }, line = { from = { -2, 0, 0 }, to = { 2, 1, 0 } },
   arc = { at = { 0, 1, 0 }, from = { 1, 0, 0 }, to = { 0, 1, 0 } },
+  chart = { series = { { y = { 1, 2 } } } },
 }
 
 -- The fields of the other objects are in the engine's tables. "part" adds a shape to a combined solid.

@@ -1,0 +1,207 @@
+// The series of glint.chart: tables with label, x, y, color, width and dots.
+#include "bindings/lua/chart.h"
+
+#include <stddef.h>
+#include <string.h>
+
+static const char CHARTS; // address used as the registry key for the charts by list of series
+
+typedef struct series {
+    char label[GLINT_CHART_TEXT_SIZE];
+    bool has_color, has_width, has_dots;
+    double color[3], width;
+} series;
+
+static void read_label(lua_State *L, int index, const char *path, void *out)
+{
+    size_t length;
+    if (lua_type(L, index) != LUA_TSTRING)
+        glintL_refuse(L, index, path, "string");
+    const char *text = lua_tolstring(L, index, &length);
+    if (length >= GLINT_CHART_TEXT_SIZE || strlen(text) != length)
+        glintL_error(L, "%s: at most %d bytes, none of them zero, expected", path, GLINT_CHART_TEXT_SIZE - 1);
+    memcpy(((series *)out)->label, text, length + 1);
+}
+
+static void ignore(lua_State *L, int index, const char *path, void *out) // the points are read by read_points
+{
+    (void)L, (void)index, (void)path, (void)out;
+}
+
+static const glintL_field FIELDS[] = {
+    { .name = "label", GLINTL_CUSTOM(read_label, NULL) },
+    { .name = "x", GLINTL_CUSTOM(ignore, NULL) },
+    { .name = "y", GLINTL_CUSTOM(ignore, NULL), .required = true },
+    { .name = "color", .type = GLINT_TYPE_COLOR, .offset = offsetof(series, color), .set_offset = offsetof(series, has_color) },
+    { .name = "width", .type = GLINT_TYPE_NUMBER, .offset = offsetof(series, width), .set_offset = offsetof(series, has_width) },
+    { .name = "dots", .type = GLINT_TYPE_FLAG, .offset = offsetof(series, has_dots) },
+    { .name = NULL },
+};
+
+// Reads the numbers of the list at `index`.
+static void read_numbers(lua_State *L, int index, const char *path, size_t count, double *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        const char *full = lua_pushfstring(L, "%s[%d]", path, (int)i + 1);
+        out[i] = glintL_read_number(L, lua_gettop(L) - 1, full);
+        lua_pop(L, 2);
+    }
+}
+
+// Calls the function at `function` for each x.
+static void call_function(lua_State *L, int function, const char *path, size_t count, const double *x, double *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        lua_pushvalue(L, function);
+        lua_pushnumber(L, x[i]);
+        lua_call(L, 1, 1);
+        const char *full = lua_pushfstring(L, "%s(%f)", path, x[i]);
+        out[i] = glintL_read_number(L, lua_gettop(L) - 1, full);
+        lua_pop(L, 2);
+    }
+}
+
+// Pushes the x of the series at `index`: its own list, the chart's, or nil.
+static void push_x(lua_State *L, int index)
+{
+    lua_pushliteral(L, "x");
+    if (lua_rawget(L, index) == LUA_TNIL && lua_istable(L, 1)) {
+        lua_pop(L, 1);
+        lua_pushliteral(L, "x");
+        lua_rawget(L, 1);
+    }
+}
+
+// Pushes a buffer with the points of the series at `index`: x, then y.
+static void push_points(lua_State *L, int index, const char *path, glint_curve *out)
+{
+    const char *x_path = lua_pushfstring(L, "%s.x", path), *y_path = lua_pushfstring(L, "%s.y", path);
+    push_x(L, index);
+    const int x = lua_gettop(L), y = x + 1;
+    lua_pushliteral(L, "y");
+    lua_rawget(L, index);
+    const bool has_x = !lua_isnil(L, x), has_function = lua_isfunction(L, y);
+    if (has_x && !lua_istable(L, x))
+        glintL_refuse(L, x, x_path, "list of numbers");
+    if (!has_function && !lua_istable(L, y))
+        glintL_refuse(L, y, y_path, "list of numbers or function of x");
+    if (has_function && !has_x)
+        glintL_error(L, "%s: list of the numbers at which y is called expected", x_path);
+    const size_t count = has_x ? glintL_check_list(L, x, x_path, false) : glintL_check_list(L, y, y_path, false);
+    if (!has_function && glintL_check_list(L, y, y_path, false) != count)
+        glintL_error(L, "%s: as many numbers as in x expected: %d, got %d", y_path, (int)count, (int)lua_rawlen(L, y));
+    double *points = lua_newuserdatauv(L, (2 * count + 1) * sizeof *points, 0);
+    if (has_x)
+        read_numbers(L, x, x_path, count, points);
+    for (size_t i = 0; i < count && !has_x; i++)
+        points[i] = (double)i + 1;
+    if (has_function)
+        call_function(L, y, y_path, count, points, points + count);
+    else
+        read_numbers(L, y, y_path, count, points + count);
+    lua_replace(L, x - 2);
+    lua_settop(L, x - 2);
+    out->x = points;
+    out->y = points + count;
+    out->count = count;
+}
+
+static int release(lua_State *L)
+{
+    glint_chart **chart = lua_touserdata(L, 1);
+    glint_chart_release(*chart);
+    *chart = NULL;
+    return 0;
+}
+
+// Stores a reference to a chart that the list of series at `index` keeps alive. Returns its place.
+static glint_chart **keep(lua_State *L, int index)
+{
+    glintL_push_weak_table(L, &CHARTS, "k");
+    lua_pushvalue(L, index);
+    glint_chart **chart = lua_newuserdatauv(L, sizeof *chart, 0);
+    *chart = NULL;
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, release);
+    lua_setfield(L, -2, "__gc");
+    lua_setmetatable(L, -2);
+    lua_rawset(L, -3);
+    lua_pop(L, 1);
+    return chart;
+}
+
+void glintL_chart_read(lua_State *L, int index, const char *path, void *desc)
+{
+    glint_error error;
+    glint_curve curves[GLINT_CURVES_MAX];
+    series read[GLINT_CURVES_MAX];
+    const int top = lua_gettop(L);
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "list of series");
+    const size_t count = glintL_check_list(L, index, path, false);
+    if (count < 1 || count > GLINT_CURVES_MAX)
+        glintL_error(L, "%s: 1 .. %d series expected, got %d", path, GLINT_CURVES_MAX, (int)count);
+    luaL_checkstack(L, (int)count + 12, "series");
+    for (size_t i = 0; i < count; i++) {
+        char full[64];
+        snprintf(full, sizeof full, "%.40s[%zu]", path, i + 1);
+        read[i] = (series) { .label = "" };
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        glintL_read_table(L, -1, full, FIELDS, &read[i], false);
+        push_points(L, lua_gettop(L), full, &curves[i]);
+        lua_remove(L, -2); // leaves the buffer
+        curves[i].label = read[i].label;
+        curves[i].has_color = read[i].has_color;
+        memcpy(curves[i].color, read[i].color, sizeof curves[i].color);
+        curves[i].has_width = read[i].has_width;
+        curves[i].width = read[i].width;
+        curves[i].has_dots = read[i].has_dots;
+    }
+    glint_chart **chart = keep(L, index);
+    glintL_check_status(L, "chart", &error, glint_chart_create(curves, count, chart, &error));
+    ((glint_overlay_desc *)desc)->chart = *chart;
+    lua_settop(L, top);
+}
+
+static void push_numbers(lua_State *L, const double *of, size_t count, const char *name)
+{
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        lua_pushnumber(L, of[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, name);
+}
+
+static void push_curve(lua_State *L, const glint_curve *curve)
+{
+    lua_createtable(L, 0, 6);
+    lua_pushstring(L, curve->label);
+    lua_setfield(L, -2, "label");
+    push_numbers(L, curve->x, curve->count, "x");
+    push_numbers(L, curve->y, curve->count, "y");
+    if (curve->has_color) {
+        glintL_push_vector(L, curve->color);
+        lua_setfield(L, -2, "color");
+    }
+    if (curve->has_width) {
+        lua_pushnumber(L, curve->width);
+        lua_setfield(L, -2, "width");
+    }
+    lua_pushboolean(L, curve->has_dots);
+    lua_setfield(L, -2, "dots");
+}
+
+void glintL_chart_push(lua_State *L, const void *desc)
+{
+    const glint_overlay_desc *d = desc;
+    const glint_curve *curve;
+    luaL_checkstack(L, 6, "series");
+    lua_newtable(L);
+    for (size_t i = 0; (curve = glint_chart_curve(d->chart, i)) != NULL; i++) {
+        push_curve(L, curve);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    glintL_freeze(L, "series");
+}
