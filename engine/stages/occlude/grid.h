@@ -1,8 +1,7 @@
-// grid: tests points of a tile against the occluders in the cells of the light's view (glint_light_grid). If many
-// points of a group share a cell, they are tested together, one entry after the other. Each other point searches its
-// cell for entries that may block it, nearest to the light first. These pairs of point and entry are decided a vector
-// at a time, with a different sphere in each lane, until every point is blocked or has no entry left. Contract:
-// stages.h, occlude.
+// grid: tests points of a tile against the occluders in the cells of the light's view (glint_light_grid). Each point
+// searches its cell for entries that may block it, nearest to the light first. These pairs of point and entry are
+// decided a vector at a time, with a different sphere in each lane, until every point is blocked or has no entry left.
+// Contract: stages.h, occlude.
 #ifndef GLINT_OCCLUDE_GRID_H
 #define GLINT_OCCLUDE_GRID_H
 
@@ -32,14 +31,6 @@ typedef struct grid_points {
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
 } grid_points;
 
-#define GRID_TOGETHER 12 // from this number on, the points of a group in one cell are tested together
-
-/// Points of a group that share a cell.
-typedef struct grid_run {
-    uint32_t next, end; ///< the cell's entries
-    uint16_t lanes, group;
-} grid_run;
-
 /// Pairs of a point and the sphere that it is tested against.
 typedef struct grid_pairs {
     uint32_t count;
@@ -55,13 +46,6 @@ typedef struct grid_coords {
     _Alignas(64) uint32_t cell[GLINT_GROUP];
     unsigned known; ///< lanes whose positions are defined
 } grid_coords;
-
-/// The tile's projected positions and runs.
-typedef struct grid_runs {
-    grid_coords coords[GLINT_TILE_GROUPS];
-    uint32_t count;
-    grid_run run[GLINT_TILE_GROUPS];
-} grid_runs;
 
 /// Projects VD lanes from i on.
 static void grid_lane_coords(const glint_occlude_args *args, size_t at, int i, grid_coords *out)
@@ -132,33 +116,20 @@ static unsigned grid_own(const glint_occlude_args *args, size_t at, unsigned bac
     return blocked;
 }
 
-static inline void grid_prefetch(const glint_light_grid *grid, uint32_t entry)
-{
-    __builtin_prefetch(grid->center + entry);
-    __builtin_prefetch(grid->size + entry);
-}
-
-/// Returns the entries of a lane's cell, and prefetches them.
-static grid_run grid_look_up(const glint_light_grid *grid, const grid_coords *coords, unsigned lane)
-{
-    const uint32_t cell = (coords->cell[lane] >> 16) * grid->count[0] + (coords->cell[lane] & 0xffff);
-    const grid_run run = { .next = grid->begin[cell], .end = grid->begin[cell + 1] };
-    if (run.next < run.end)
-        grid_prefetch(grid, run.next);
-    return run;
-}
-
-/// Adds lanes of a group as single points.
-static void grid_add_points(const glint_light_grid *grid, const grid_coords *coords, uint32_t g, unsigned lanes,
-                            grid_points *points)
+/// Adds lanes of a group, and prefetches the entries of their cells.
+static void grid_add_lanes(const glint_light_grid *grid, const grid_coords *coords, uint32_t g, unsigned lanes,
+                           grid_points *points)
 {
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = (unsigned)__builtin_ctz(lanes), k = points->count;
-        const grid_run run = grid_look_up(grid, coords, lane);
-        if (run.next == run.end)
+        const uint32_t cell = (coords->cell[lane] >> 16) * grid->count[0] + (coords->cell[lane] & 0xffff);
+        const uint32_t next = grid->begin[cell], end = grid->begin[cell + 1];
+        if (next == end)
             continue;
-        points->next[k] = run.next;
-        points->end[k] = run.end;
+        __builtin_prefetch(grid->center + next);
+        __builtin_prefetch(grid->size + next);
+        points->next[k] = next;
+        points->end[k] = end;
         points->uv[0][k] = coords->uv[0][lane];
         points->uv[1][k] = coords->uv[1][lane];
         points->near[k] = coords->w[lane];
@@ -170,32 +141,17 @@ static void grid_add_points(const glint_light_grid *grid, const grid_coords *coo
 }
 
 /// Adds the unoccluded points of a group that may be blocked. Returns false if some projected position is unknown.
-static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_runs *runs, grid_points *points)
+static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_points *points)
 {
-    const glint_light_grid *grid = args->grid;
     const size_t at = (size_t)g * GLINT_GROUP;
-    grid_coords *coords = &runs->coords[g];
-    coords->known = 0;
+    grid_coords coords;
+    coords.known = 0;
     for (int i = 0; i < GLINT_GROUP; i += VD)
-        grid_lane_coords(args, at, i, coords);
-    if (args->unoccluded[0][g] & ~coords->known)
+        grid_lane_coords(args, at, i, &coords);
+    if (args->unoccluded[0][g] & ~coords.known)
         return false;
     args->unoccluded[0][g] &= (uint16_t)~grid_own(args, at, args->unoccluded[0][g] & args->back[g]);
-    const unsigned pending = args->unoccluded[0][g] & grid_cells(grid, coords);
-    if (!pending)
-        return true;
-    const unsigned first = (unsigned)__builtin_ctz(pending),
-                   same = pending & lanes_equal(coords->cell, coords->cell[first]);
-    if (__builtin_popcount(same) < GRID_TOGETHER) {
-        grid_add_points(grid, coords, g, pending, points);
-        return true;
-    }
-    grid_run run = grid_look_up(grid, coords, first);
-    run.lanes = (uint16_t)same;
-    run.group = (uint16_t)g;
-    if (run.next < run.end)
-        runs->run[runs->count++] = run;
-    grid_add_points(grid, coords, g, pending & ~same, points);
+    grid_add_lanes(args->grid, &coords, g, args->unoccluded[0][g] & grid_cells(args->grid, &coords), points);
     return true;
 }
 
@@ -313,86 +269,6 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
     }
 }
 
-// ---- Points of one cell ----
-
-/// Bounds of a run's projected positions.
-typedef struct grid_bounds {
-    vf least[2], most[2], w, reach; ///< each of these has the same number in all lanes
-} grid_bounds;
-
-static inline grid_bounds grid_bound(const grid_coords *coords, unsigned lanes)
-{
-    const float *const of[4] = { coords->uv[0], coords->uv[1], coords->w, coords->reach };
-    vf least[4], most[4];
-    for (int j = 0; j < 4; j++) {
-        least[j] = f_set(HUGE_VALF);
-        most[j] = f_set(-HUGE_VALF);
-        widen(of[j], lanes, &least[j], &most[j]);
-        least[j] = f_set(f_min_all(least[j]));
-        most[j] = f_set(f_max_all(most[j]));
-    }
-    return (grid_bounds) { { least[0], least[1] }, { most[0], most[1] }, most[2], most[3] };
-}
-
-/// Returns the distance in steps from a position to the interval from `least` to `most`.
-static inline vf grid_distance(vf center, vf least, vf most)
-{
-    return f_max(f_max(least - center, center - most), f_set(0));
-}
-
-/// Returns the lanes of `unoccluded`, all in the cell of an entry, that the entry's sphere blocks.
-static unsigned grid_entry_blocks(const shadow_tile_f64 *tile, const grid_coords *coords, size_t at, uint32_t entry,
-                                  unsigned unoccluded)
-{
-    const glint_occlude_args *args = tile->args;
-    const glint_light_grid *grid = args->grid;
-    const vi center = i_set(grid->center[entry]), size = i_set(grid->size[entry]);
-    const vf u = grid_step(center), v = grid_step(i_shr(center, 16));
-    const light_sides_f64 sides = { 0xffff, 0 };
-    unsigned near = 0, blocked = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const fm within =
-            grid_within(size, u - f_load(coords->uv[0] + i), v - f_load(coords->uv[1] + i), f_load(coords->reach + i));
-        near |= fm_bits(fm_and(within, grid_before(size, f_load(coords->w + i)))) << i;
-    }
-    near &= unoccluded & ~lanes_equal(args->prim + at, grid->id[entry]);
-    if (!near)
-        return 0;
-    const glint_prim *prim = &args->geometry->prims[grid->id[entry]];
-    const ball_f64 ball = ball_of_f64(prim);
-    count_tests(args->tests, near);
-    for (int i = 0; i < GLINT_GROUP; i += VD) {
-        vd d[3];
-        if (!(near >> i & ((1u << VD) - 1)))
-            continue;
-        directions_to_f64(args, tile->position, at, i, d);
-        blocked |= lanes_blocked_f64(args, prim, &ball, sides, at, i, d) << i;
-    }
-    return blocked & near;
-}
-
-/// Tests a run's points against its cell's entries.
-static void grid_test_run(const shadow_tile_f64 *tile, const grid_coords *coords, const grid_run *run)
-{
-    const glint_light_grid *grid = tile->args->grid;
-    const grid_bounds bounds = grid_bound(coords, run->lanes);
-    unsigned unoccluded = run->lanes;
-    for (uint32_t from = run->next; from < run->end && unoccluded; from += VF) {
-        const unsigned there = run->end - from < VF ? (1u << (run->end - from)) - 1 : (1u << VF) - 1;
-        const vi center = grid_load(grid->center + from), size = grid_load(grid->size + from);
-        const vf du = grid_distance(grid_step(center), bounds.least[0], bounds.most[0]);
-        const vf dv = grid_distance(grid_step(i_shr(center, 16)), bounds.least[1], bounds.most[1]);
-        const unsigned before = fm_bits(grid_before(size, bounds.w)) & there;
-        for (unsigned near = before & fm_bits(grid_within(size, du, dv, bounds.reach)); near && unoccluded;
-             near &= near - 1)
-            unoccluded &= ~grid_entry_blocks(tile, coords, (size_t)run->group * GLINT_GROUP,
-                                             from + (unsigned)__builtin_ctz(near), unoccluded);
-        if (grid->sorted && before != there) // the remaining entries are behind the points
-            break;
-    }
-    tile->args->unoccluded[0][run->group] &= (uint16_t)~(run->lanes & ~unoccluded);
-}
-
 // ---- All ----
 
 /// Removes from args->unoccluded the points that are blocked by primitives that are in no cell.
@@ -420,14 +296,11 @@ static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
     const glint_occlude_args *args = tile->args;
     grid_points points;
     grid_pairs pairs;
-    grid_runs runs;
     grid_others(tile, group);
-    points.count = runs.count = 0;
+    points.count = 0;
     for (uint32_t g = 0; g < args->group_count; g++)
-        if (args->unoccluded[0][g] && !grid_add_group(args, g, &runs, &points))
+        if (args->unoccluded[0][g] && !grid_add_group(args, g, &points))
             return false;
-    for (uint32_t i = 0; i < runs.count && !is_stopped(args->stop); i++)
-        grid_test_run(tile, &runs.coords[runs.run[i].group], &runs.run[i]);
     points.live_count = points.count;
     while (points.live_count && !is_stopped(args->stop)) {
         grid_pair(args, &points, &pairs);
