@@ -78,6 +78,11 @@ ifeq ($(call have,freetype2),yes)
   FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
   FONT_LIBS := $(shell pkg-config --libs freetype2)
 endif
+# Likewise for PDF.
+ifeq ($(call have,freetype2 cairo-ft cairo-pdf fontconfig),yes)
+  CAIRO_CFLAGS := -DGLINT_HAVE_CAIRO $(shell pkg-config --cflags cairo-ft cairo-pdf fontconfig)
+  CAIRO_LIBS := $(shell pkg-config --libs cairo-ft cairo-pdf fontconfig)
+endif
 # Likewise for JPEG textures.
 ifeq ($(call have,libjpeg),yes)
   JPEG_CFLAGS := -DGLINT_HAVE_JPEG $(shell pkg-config --cflags libjpeg)
@@ -135,7 +140,7 @@ COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKA
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(MOVES) $(SAN_FLAGS) $(PTHREAD)
 LUA_CFLAGS := $(shell pkg-config --cflags $(LUA_PACKAGE) 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs $(LUA_PACKAGE) 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(JPEG_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(CAIRO_LIBS) $(JPEG_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED))
 
@@ -216,6 +221,7 @@ $(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
 $(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%)
 $(call objects_of,engine/stages/simd/select.c): $(BUILD)/kernels
 $(call objects_of,engine/text/letters.c): OWN := $(FONT_CFLAGS)
+$(call objects_of,engine/file/pdf.c): OWN := $(CAIRO_CFLAGS)
 $(call objects_of,engine/file/jpeg.c): OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
@@ -768,7 +774,7 @@ pc_prefix = $(if $(filter $(PREFIX)/%,$(libdir)),$${pcfiledir}/..$(shell echo '$
 $(BUILD)/glint.pc: engine/glint.pc.in FORCE
 	@sed -e 's|@prefix@|$(pc_prefix)|' -e 's|@libdir@|$(libdir:$(PREFIX)/%=$${prefix}/%)|' \
 	    -e 's|@includedir@|$(incdir:$(PREFIX)/%=$${prefix}/%)|' \
-	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2) $(if $(JPEG_LIBS),libjpeg)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
+	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2) $(if $(CAIRO_LIBS),cairo-ft cairo-pdf fontconfig) $(if $(JPEG_LIBS),libjpeg)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
 
 $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)

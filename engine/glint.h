@@ -1564,16 +1564,18 @@ typedef struct glint_text {
 
 /// One pass as a file. Pointers are borrowed for the call.
 typedef struct glint_write_desc {
-    /// Ends in .png; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy, height x width or height x
+    /// Ends in .png; in .svg or .pdf for a bitmap with overlays and text as vectors, on a page of 72 / dpi points per
+    /// pixel; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy, height x width or height x
     /// width x 3, top row first); or in .exr for all passes of the image, as channels of one file: R, G, B, A,
     /// depth.Z, normal.X ... diffuse.B
     const char *path;
     glint_pass pass; ///< a pass of the image; ignored by .exr, which has all
     /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. .exr: with 16 `bits`, light
-    /// and normals are half floats; with 8, they are float. Everything else is always float
+    /// and normals are half floats; with 8, they are float. Everything else is always float. .svg: like .png; .pdf:
+    /// 8-bit sRGB values only
     glint_tone_desc tone;
     glint_encode encode; ///< .png; default GLINT_ENCODE_FAST
-    double dpi; ///< .png: pixels per inch for printing, 0 .. 1e6; 0: not set
+    double dpi; ///< .png, .svg, .pdf: pixels per inch for printing, 0 .. 1e6; 0: not set
     /// .png of depth and derivatives: 1 + a glint_colormap, whose colours replace grey; 0: grey. For depth, the
     /// background stays black; for a derivative, the mean of its three components is shown
     int colormap;
@@ -1586,6 +1588,8 @@ typedef struct glint_write_desc {
 
 /// Returns "OpenEXR 3.1.5"; NULL: this build cannot write .exr.
 const char *glint_exr_library(void);
+/// Returns the version of cairo, "1.16.0"; NULL: this build cannot write .pdf.
+const char *glint_cairo_version(void);
 /// Returns the names and versions of the libraries in use; the last entry is NULL. Static strings.
 const char *const *glint_libraries(void);
 
@@ -1820,7 +1824,7 @@ typedef struct glint_sheet_desc {
     const glint_overlay_desc *colorbar;
 } glint_sheet_desc;
 
-/// Draws finished pictures in rows, with labels, as one 8-bit PNG: dark text on white. If a picture is missing or
+/// Draws finished pictures in rows, with labels, as one 8-bit .png, .svg or .pdf: dark text on white. If a picture is missing or
 /// differs in size from the first, the error names it and the file is unchanged. A row of differences holds `gain`
 /// times |cell - chosen cell|, in 8-bit sRGB values.
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);

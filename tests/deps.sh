@@ -22,6 +22,7 @@ libdeflate-dev  module:libdeflate
 libopenexr-dev  module:OpenEXR
 libfreetype-dev module:freetype2
 fonts-dejavu-core file:/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
+libcairo2-dev   module:cairo-ft
 libjpeg-dev     module:libjpeg
 libsixel-dev    module:libsixel
 libseccomp-dev  module:libseccomp
@@ -32,6 +33,8 @@ libmpfr-dev     module:mpfr
 lua5.4          command:lua5.4|lua-5.4|lua54
 '
 test_optional='
+librsvg2-bin    command:rsvg-convert
+poppler-utils   command:pdftoppm
 python3-numpy   file:/usr/lib/python3/dist-packages/numpy
 lua-check       command:luacheck
 cppcheck        command:cppcheck
@@ -160,7 +163,7 @@ for what in "$@"; do
         ;;
     build)
         require "$build_required"
-        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libjpeg there are no JPEG textures, without libseccomp there is no --untrusted"
+        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libcairo2 there is no .pdf, without libjpeg there are no JPEG textures, without libseccomp there is no --untrusted"
         ;;
     test)
         require "$test_required"

@@ -147,7 +147,7 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "describe", CLI_DESCRIBE, CLI_SCRIPT, "SCRIPT --json", "list the parameters of a script, for programs" },
     { "compare", CLI_COMPARE, CLI_FILES, "A B [--fail X] [--warn X]",
       "compare two pictures; exit 0 same, 1 warning, 2 different, 3 other size, 4 unreadable file" },
-    { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "make a contact sheet, .png or .html, of finished frames" },
+    { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "make a contact sheet, .png, .svg, .pdf or .html, of finished frames" },
     { "assemble", CLI_ASSEMBLE, CLI_FILES, "FILES -o FILM", "make a film of finished frames" },
     { "join", CLI_JOIN, CLI_FILES, "PARTS -o PICTURE", "join the parts that --region has rendered into one picture" },
     { "relight", CLI_RELIGHT, CLI_FILES, "FILE.exr -o PICTURE [--light NAME=VALUE]",

@@ -119,7 +119,7 @@ int cli_sheet(const cli_options *options, cli_output *output)
     glint_overlay_desc bar;
     int code = GLINTL_EXIT_USAGE;
     if (!options->output)
-        return refuse(output, code, "sheet", "expected -o NAME.png or -o NAME.html");
+        return refuse(output, code, "sheet", "expected -o NAME.png, .svg, .pdf or .html");
     if (options->is_live && !options->live_script)
         return refuse(output, code, "sheet", "expected --live=SCRIPT with the script of the pictures");
     if (options->colorbar && !read_colorbar(options->colorbar, &bar, message))

@@ -301,7 +301,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       .help = "run the script for each value of a parameter: A:B:N, A:B:*N or V,V,V",
       .repeats = true },
     { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH | CLI_RELIGHT, read_text,
-      .help = "output files: %04d or #### is the frame number; .png, .pfm, .npy, .exr, a film, or none", AT(output), .suggest = CLI_SUGGEST_FILES,
+      .help = "output files: %04d or #### is the frame number; .png, .svg, .pdf, .pfm, .npy, .exr, a film, or none", AT(output), .suggest = CLI_SUGGEST_FILES,
       .group = "files" },
     { "passes", 0, "LIST", SCRIPTED, read_render, .help = "also write these:", .suggest = CLI_SUGGEST_PASSES },
     { "force", 0, NULL, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag,

@@ -45,8 +45,8 @@ int cli_version(const cli_options *options, cli_output *output)
     fputs("libraries: " LUA_RELEASE, out);
     for (const char *const *library = glint_libraries(); *library; library++)
         fprintf(out, ", %s", *library);
-    fprintf(out, "\nwrites: .png .pfm .npy%s; deflates by %s (fast), %s (small)\n", glint_exr_library() ? " .exr" : "",
-            glint_encoder_name(GLINT_ENCODE_FAST), glint_encoder_name(GLINT_ENCODE_SMALL));
+    fprintf(out, "\nwrites: .png .svg%s .pfm .npy%s; deflates by %s (fast), %s (small)\n", glint_cairo_version() ? " .pdf" : "",
+            glint_exr_library() ? " .exr" : "", glint_encoder_name(GLINT_ENCODE_FAST), glint_encoder_name(GLINT_ENCODE_SMALL));
 #ifdef GLINT_HAVE_SECCOMP
     fputs("--untrusted: yes, by seccomp\n", out);
 #else

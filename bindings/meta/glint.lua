@@ -412,7 +412,7 @@ function glint.difference(fields) end
 
 -- ---- Overlays: labels, colour bars, axes, arrows ----
 
---- Drawn over a finished picture: only in .png files of beauty, not in other passes and not in .pfm, .npy and .exr.
+--- Drawn over a finished picture: in .png files of beauty, and as vectors in .svg and .pdf; not in other passes and not in .pfm, .npy and .exr.
 --- Lengths in points are dpi / 72 pixels if `dpi` is set, otherwise pixels.
 ---@class glint.overlay_fields
 ---@field at? "top left"|"top"|"top right"|"left"|"center"|"right"|"bottom left"|"bottom"|"bottom right"|number[]  position in the picture, or {x, y} as shares of the free space within the margin. Default for a label "top left", a colour bar "right", axes "bottom left"
@@ -645,8 +645,8 @@ function glint.scene(fields) end
 ---@field outline? "none"|"black"|"white"  colour of lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  compression of a .png; the pixels are identical. Default "fast"
 ---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  colour map for the .png of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
----@field dpi? number  pixels per inch for printing a .png, 0 .. 1e6. Default 0: not stored
----@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
+---@field dpi? number  pixels per inch for printing a .png, .svg or .pdf, 0 .. 1e6. Default 0: not stored; then a pixel of a .svg or .pdf is a point
+---@field output? string  file name, .png, .svg or .pdf (overlays as vectors), .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  passes written in addition to the beauty: a list, or "ambient,depth"; "all": every pass except d:NAME. Default none
 ---@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": renders only this part of the frame, in pixels from the top left, bit-identical to the same part of the whole frame. Default: all
 
@@ -658,7 +658,7 @@ function glint.scene(fields) end
 ---@field exposure? number  stops, -32 .. 32. Default 0
 ---@field encode? "fast"|"small"  Default "fast"
 ---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  colour map for depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
----@field dpi? number  pixels per inch of a .png, 0 .. 1e6. Default 0: not stored
+---@field dpi? number  pixels per inch of a .png, .svg or .pdf, 0 .. 1e6. Default 0: not stored
 ---@field pass? glint.pass  Default "beauty"
 
 ---@class glint.image
@@ -683,7 +683,7 @@ function image:pixel(x, y, pass) end
 ---@return string
 function image:bytes(pass) end
 
---- Writes a .png, .pfm, .npy or .exr, which appears whole or not at all. Missing folders are made. Wrong use raises; a
+--- Writes a .png, .svg, .pdf, .pfm, .npy or .exr, which appears whole or not at all. Missing folders are made. Wrong use raises; a
 --- failure to write the file returns nil and a message.
 ---@param path string
 ---@param options? glint.save_options
@@ -765,7 +765,7 @@ function glint.animation(fields) end
 ---@field dpi? number  pixels per inch of the .png; a point is dpi / 72 pixels, or 1 pixel without dpi. Default: the dpi of the pictures
 ---@field transparent? boolean  the background of the sheet is transparent. Default false
 ---@field colorbar? glint.colorbar  a colour bar for all pictures of a .png: to their right or, if horizontal, below them; in the sheet's text size and colour. Default none
----@field output? string  file name, .png or .html. Default: sheet.png or NAME_sheet.png next to the frames, with the number of the first frame unless that is 1
+---@field output? string  file name, .png, .svg, .pdf or .html. Default: sheet.png or NAME_sheet.png next to the frames, with the number of the first frame unless that is 1
 
 ---@class glint.sweep_fields: glint.render
 ---@field scene glint.scene

@@ -64,10 +64,10 @@ bool glintL_name_is_plain(const char *name, size_t length)
     return good;
 }
 
-// Returns the dot of ".png", ".pfm", ".npy" or ".exr"; NULL: another extension, or an empty name before it.
+// Returns the dot of ".png", ".svg", ".pdf", ".pfm", ".npy" or ".exr"; NULL: another extension, or an empty name before it.
 static const char *ending(const char *path)
 {
-    static const char *const known[] = { ".png", ".pfm", ".npy", ".exr" };
+    static const char *const known[] = { ".png", ".svg", ".pdf", ".pfm", ".npy", ".exr" };
     size_t length = strlen(path);
     if (length < 5 || path[length - 5] == '/')
         return NULL;
@@ -77,17 +77,17 @@ static const char *ending(const char *path)
     return NULL;
 }
 
-bool glintL_name_is_linear(const char *path)
+static bool ends_in(const char *path, const char *wanted)
 {
     const char *dot = ending(path);
-    return dot && strcasecmp(dot, ".png") != 0;
+    return dot && strcasecmp(dot, wanted) == 0;
 }
 
-bool glintL_name_is_exr(const char *path)
-{
-    const char *dot = ending(path);
-    return dot && strcasecmp(dot, ".exr") == 0;
-}
+bool glintL_name_is_linear(const char *path) { return ends_in(path, ".pfm") || ends_in(path, ".npy") || ends_in(path, ".exr"); }
+
+bool glintL_name_is_vector(const char *path) { return ends_in(path, ".svg") || ends_in(path, ".pdf"); }
+
+bool glintL_name_is_exr(const char *path) { return ends_in(path, ".exr"); }
 
 glintL_film_kind glintL_film_kind_of(const char *path, bool apng)
 {
@@ -124,9 +124,11 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
     if (!wrong && is_film && glintL_name_has_number(pattern))
         wrong = "a film's name without a place for the frame number";
     if (!wrong && !is_film && !ending(pattern) && !glintL_name_is_special(pattern))
-        wrong = "a file name ending in .png, .pfm, .npy or .exr, or a film's in .mp4, .webm, .gif or .apng";
+        wrong = "a file name ending in .png, .svg, .pdf, .pfm, .npy or .exr, or a film's in .mp4, .webm, .gif or .apng";
     if (!wrong && glintL_name_is_exr(pattern) && !glint_exr_library())
-        wrong = "a file name ending in .png, .pfm or .npy, as this build has no OpenEXR (libopenexr-dev),";
+        wrong = "a file name ending in .png, .svg, .pdf, .pfm or .npy, as this build has no OpenEXR (libopenexr-dev),";
+    if (!wrong && ends_in(pattern, ".pdf") && !glint_cairo_version())
+        wrong = "a file name ending in .png or .svg, as this build has no cairo (libcairo2-dev),";
     if (!wrong && strlen(pattern) >= GLINTL_PATH_SIZE - 64)
         wrong = "a shorter file name";
     if (wrong)

@@ -120,6 +120,7 @@ bool glintL_name_has_number(const char *pattern);
 /// pass: its name, such as "beauty" or "d:lamp_x"; the file name has "d_lamp_x".
 bool glintL_name_file(const glintL_naming *naming, int64_t number, const char *pass, char path[GLINTL_PATH_SIZE]);
 bool glintL_name_is_linear(const char *path); ///< .pfm, .npy, .exr: linear light, without integer pixel values and key
+bool glintL_name_is_vector(const char *path); ///< .svg, .pdf: pixel values without a key, and overlays as vectors
 bool glintL_name_is_exr(const char *path); ///< one file contains all passes
 /// Returns the kind of film by the extension; `apng`: a .png is also a film.
 glintL_film_kind glintL_film_kind_of(const char *path, bool apng);

@@ -18,8 +18,8 @@ static bool ends_in(const char *path, const char *ending)
 
 bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
 {
-    if (!ends_in(sheet->path, ".png") && !ends_in(sheet->path, ".html")) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "a file name ending in .png or .html expected, got '%.200s'",
+    if (!ends_in(sheet->path, ".png") && !glintL_name_is_vector(sheet->path) && !ends_in(sheet->path, ".html")) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "a file name ending in .png, .svg, .pdf or .html expected, got '%.200s'",
                  sheet->path);
         return false;
     }

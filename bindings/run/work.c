@@ -110,7 +110,7 @@ static glint_status add_file(glintL_work *work, const glintL_naming *naming, gli
                                                                     "the light's group to a name with different "
                                                                     "letters and digits");
     file->key[0] = file->whole[0] = '\0';
-    if (!glintL_name_is_linear(file->path) && !glintL_name_is_special(file->path)) {
+    if (!glintL_name_is_linear(file->path) && !glintL_name_is_vector(file->path) && !glintL_name_is_special(file->path)) {
         glint_write_desc desc = write_desc(work, file);
         glint_frame_key(work->plan, &desc, file->key);
         if (work->render.desc.region[2] > 0)

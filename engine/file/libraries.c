@@ -1,4 +1,5 @@
 /// The names and versions of the libraries in use.
+#include "engine/glint.h"
 #include "engine/text/letters.h"
 
 #include <png.h>
@@ -41,6 +42,9 @@ static void make_list(void)
         add(glint_exr_library());
     if (glint_letters_library())
         add(glint_letters_library());
+    snprintf(name, sizeof name, "cairo %s", glint_cairo_version() ? glint_cairo_version() : "");
+    if (glint_cairo_version())
+        add(name);
 }
 
 const char *const *glint_libraries(void)

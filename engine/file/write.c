@@ -2,6 +2,7 @@
 
 #include "engine/base/status.h"
 #include "engine/file/exr.h"
+#include "engine/file/figure.h"
 #include "engine/file/file.h"
 #include "engine/film/image.h"
 #include "engine/file/npy.h"
@@ -47,7 +48,8 @@ static bool is_special_file(const char *path)
 static bool kind_by_ending(const char *path, glint_file_kind *kind)
 {
     static const char *const endings[] = {
-        [GLINT_FILE_PNG] = ".png", [GLINT_FILE_PFM] = ".pfm", [GLINT_FILE_NPY] = ".npy", [GLINT_FILE_EXR] = ".exr"
+        [GLINT_FILE_PNG] = ".png", [GLINT_FILE_PFM] = ".pfm", [GLINT_FILE_NPY] = ".npy",
+        [GLINT_FILE_EXR] = ".exr", [GLINT_FILE_SVG] = ".svg", [GLINT_FILE_PDF] = ".pdf"
     };
     const char *ending = path ? strrchr(path, '.') : NULL;
     for (size_t i = 0; ending && i < sizeof endings / sizeof *endings; i++)
@@ -63,7 +65,7 @@ glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_e
 {
     if (kind_by_ending(path, kind))
         return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png, .pfm, .npy or .exr expected, got '%.400s'",
+    return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png, .svg, .pdf, .pfm, .npy or .exr expected, got '%.400s'",
                       path ? path : "");
 }
 
@@ -287,17 +289,26 @@ static glint_status fail_not_stored(const glint_image *image, glint_pass pass, g
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", glint_pass_name(pass));
 }
 
+/// Makes the marks of overlays. On success the caller closes the ink.
+static glint_status open_ink(const glint_overlays *overlays, double dpi, glint_ink *ink, glint_error *error)
+{
+    glint_status status = glint_ink_open(overlays->width, overlays->height, ink, error);
+    if (status)
+        return status;
+    status = glint_overlays_draw(overlays, dpi, ink, error);
+    if (status)
+        glint_ink_close(ink);
+    return status;
+}
+
 /// Makes the stamps of an image's overlays.
 static glint_status make_stamps(picture *p, double dpi, glint_error *error)
 {
-    const glint_overlays *overlays = p->image->overlays;
     glint_ink ink;
-    glint_status status = glint_ink_open(overlays->width, overlays->height, &ink, error);
+    glint_status status = open_ink(p->image->overlays, dpi, &ink, error);
     if (status)
         return status;
-    status = glint_overlays_draw(overlays, dpi, &ink, error);
-    if (!status)
-        status = glint_stamps_make(&ink, p->tone.transfer, p->tone.bits, &p->stamps, error);
+    status = glint_stamps_make(&ink, p->tone.transfer, p->tone.bits, &p->stamps, error);
     glint_ink_close(&ink);
     return status;
 }
@@ -332,9 +343,9 @@ typedef struct code_rows {
     uint64_t *stamps; ///< owned
 } code_rows;
 
-/// Opens the rows of a pass. The caller closes them, on failure too.
-static glint_status open_rows(const glint_image *image, const glint_write_desc *desc, code_rows *rows,
-                              glint_error *error)
+/// Opens the rows of a pass, without overlays. The caller closes them, on failure too.
+static glint_status open_plain_rows(const glint_image *image, const glint_write_desc *desc, code_rows *rows,
+                                    glint_error *error)
 {
     picture *p = &rows->picture;
     glint_png_source *source = &rows->source;
@@ -376,8 +387,21 @@ static glint_status open_rows(const glint_image *image, const glint_write_desc *
         source->row = row_of_outlined;
         source->stamp = NULL; // the stamps belong to the codes without lines
     }
-    if (!status && desc->pass == GLINT_PASS_BEAUTY && image->overlays)
-        status = lay_over(p, source, desc->dpi, &rows->stamps, error);
+    return status;
+}
+
+static bool has_overlays(const glint_image *image, const glint_write_desc *desc)
+{
+    return desc->pass == GLINT_PASS_BEAUTY && image->overlays;
+}
+
+/// Opens the rows of a pass with its overlays. The caller closes them, on failure too.
+static glint_status open_rows(const glint_image *image, const glint_write_desc *desc, code_rows *rows,
+                              glint_error *error)
+{
+    glint_status status = open_plain_rows(image, desc, rows, error);
+    if (!status && has_overlays(image, desc))
+        status = lay_over(&rows->picture, &rows->source, desc->dpi, &rows->stamps, error);
     return status;
 }
 
@@ -396,6 +420,27 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
     glint_status status = open_rows(image, desc, &rows, error);
     if (!status)
         status = glint_png_encode(bands, &rows.source, &png, out, reused, error);
+    close_rows(&rows);
+    return status;
+}
+
+/// Encodes a .svg or .pdf.
+static glint_status encode_figure(const glint_image *image, const glint_write_desc *desc, glint_file_kind kind, glint_bytes *out,
+                                  glint_error *error)
+{
+    code_rows rows;
+    glint_ink ink;
+    glint_figure figure = { .source = &rows.source, .x = image->part_x, .y = image->part_y };
+    const glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
+    glint_status status = open_plain_rows(image, desc, &rows, error);
+    if (!status && has_overlays(image, desc)) {
+        status = open_ink(image->overlays, desc->dpi, &ink, error);
+        figure.ink = status ? NULL : &ink;
+    }
+    if (!status)
+        status = glint_figure_encode(&figure, kind, &png, out, error);
+    if (figure.ink)
+        glint_ink_close(&ink);
     close_rows(&rows);
     return status;
 }
@@ -458,6 +503,8 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return glint_fail(error, GLINT_ERR_INVALID, "range: finite numbers expected, got %g and %g", desc->range[0], desc->range[1]);
     if (kind == GLINT_FILE_PNG)
         return encode_png(image, desc, bands, out, reused, error);
+    if (glint_file_is_vector(kind))
+        return encode_figure(image, desc, kind, out, error);
     if (kind == GLINT_FILE_EXR)
         return glint_exr_encode(image, desc->tone.bits == 16, desc->text, desc->text_count, out, error);
     float *const *plane = glint_image_planes(image, desc->pass);

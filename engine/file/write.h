@@ -6,7 +6,14 @@
 #include "engine/file/bands.h"
 #include "engine/file/bytes.h"
 
-typedef enum glint_file_kind { GLINT_FILE_PNG, GLINT_FILE_PFM, GLINT_FILE_NPY, GLINT_FILE_EXR } glint_file_kind;
+typedef enum glint_file_kind {
+    GLINT_FILE_PNG,
+    GLINT_FILE_PFM,
+    GLINT_FILE_NPY,
+    GLINT_FILE_EXR,
+    GLINT_FILE_SVG,
+    GLINT_FILE_PDF
+} glint_file_kind;
 
 /// Finds the format from the extension of `path`, in upper or lower case; GLINT_ERR_INVALID names the path and the
 /// allowed extensions.

@@ -24,13 +24,15 @@ typedef struct glint_stamps {
 /// Returns the pixel value of a linear value. bits  8 or 16.
 uint16_t glint_ink_code(double linear, glint_transfer transfer, int bits);
 /// Makes the stamps of a page's marks. Nothing is left to free on failure.
-glint_status glint_stamps_make(const glint_ink *ink, glint_transfer transfer, int bits, glint_stamps *out, glint_error *error);
+glint_status glint_stamps_make(const glint_ink *ink, glint_transfer transfer, int bits, glint_stamps *out,
+                               glint_error *error);
 void glint_stamps_free(glint_stamps *stamps);
 /// Adds a stamp of a linear colour. Takes over its coverage, which is freed at once if memory is short.
 void glint_stamps_add(glint_stamps *stamps, glint_stamp stamp, const double color[3]);
 /// Makes a mask for the part of a rectangle inside `clip`: *stamp receives the mask's position. False: they have no
 /// common part, or out of memory.
-bool glint_stamps_mask(glint_stamps *stamps, const glint_rect *clip, int x, int y, int width, int height, glint_stamp *stamp);
+bool glint_stamps_mask(glint_stamps *stamps, const glint_rect *clip, int x, int y, int width, int height,
+                       glint_stamp *stamp);
 /// Adds the stamps of strokes, antialiased as one shape. strokes.c
 void glint_stamps_strokes(glint_stamps *stamps, const glint_ink_mark *mark);
 /// Returns whether a stamp has a pixel in the `count` rows of the whole picture that begin with row `first`.

@@ -63,20 +63,21 @@ void glint_colorbar_measure(glint_layout *layout)
 }
 
 /// Draws the colours into a rectangle whose upper left corner is x, y. The first colour is at the left or at the
-/// bottom.
+/// bottom. Each colour reaches a pixel below the next one, so that no seam shows between them where a figure of vectors
+/// is drawn at another size.
 static void draw_colors(const glint_layout *layout, const bar *b, int x, int y)
 {
     const uint32_t *table = layout->desc->has_colors ? layout->desc->colors : glint_colormap_table(layout->desc->map);
     int from = 0;
     for (int i = 0; i < COLORS; i++) {
-        const int to = (int)((int64_t)b->length * (i + 1) / COLORS);
+        const int to = (int)((int64_t)b->length * (i + 1) / COLORS), end = to < b->length && to > from ? to + 1 : to;
         double color[3];
         for (int c = 0; c < 3; c++)
             color[c] = glint_srgb_decode((table[i] >> (16 - 8 * c) & 255) / 255.0);
         if (is_horizontal(layout))
-            glint_layout_fill(layout, x + from, y, to - from, b->thick, color, 1);
+            glint_layout_fill(layout, x + from, y, end - from, b->thick, color, 1);
         else
-            glint_layout_fill(layout, x, y + b->length - to, b->thick, to - from, color, 1);
+            glint_layout_fill(layout, x, y + b->length - end, b->thick, end - from, color, 1);
         from = to;
     }
 }

@@ -11,11 +11,9 @@
 ///
 /// A colour bar for all pictures is at the right, or below.
 #include "engine/base/status.h"
-#include "engine/ink/stamps.h"
+#include "engine/file/figure.h"
+#include "engine/ink/ink.h"
 #include "engine/overlay/overlay.h"
-#include "engine/file/file.h"
-#include "engine/file/png.h"
-#include "engine/file/write.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -424,21 +422,16 @@ static const void *row_of_canvas(const void *user, int y, void *scratch)
     return paper->pixels + (size_t)y * (size_t)paper->width * (size_t)paper->channels;
 }
 
-static glint_status write_canvas(const canvas *paper, double dpi, const char *path, glint_error *error)
+/// Writes the pictures with the ink over them.
+static glint_status write_sheet(const layout *l, const canvas *paper, const char *path, glint_error *error)
 {
     glint_text text = { "Software", "glint " GLINT_VERSION };
-    glint_png_source source = {
-        .width = paper->width, .height = paper->height, .row = row_of_canvas, .user = paper
-    };
-    glint_png_desc png = { .encode = GLINT_ENCODE_SMALL, .text = &text, .text_count = 1, .dpi = dpi };
-    glint_bytes bytes = { 0 };
+    glint_png_source source = { .width = paper->width, .height = paper->height, .row = row_of_canvas, .user = paper };
+    const glint_figure figure = { .source = &source, .ink = &l->ink };
+    const glint_png_desc png = { .encode = GLINT_ENCODE_SMALL, .text = &text, .text_count = 1, .dpi = l->desc->dpi };
     source.tone = glint_tone_desc_default();
     source.alpha = paper->channels == 4;
-    glint_status status = glint_png_encode(NULL, &source, &png, &bytes, NULL, error);
-    if (!status)
-        status = glint_file_write(path, bytes.data, bytes.size, error);
-    free(bytes.data);
-    return status;
+    return glint_figure_write(&figure, path, &png, error);
 }
 
 /// Fills the paper with white; with alpha, with transparency. False: out of memory.
@@ -451,17 +444,6 @@ static bool make_paper(const layout *l, canvas *out)
     if (out->pixels)
         memset(out->pixels, alpha ? 0 : 255, size);
     return out->pixels != NULL;
-}
-
-/// Draws the ink on the paper.
-static glint_status draw_ink(const layout *l, canvas *paper, glint_error *error)
-{
-    glint_stamps stamps;
-    const glint_status status = glint_stamps_make(&l->ink, GLINT_TRANSFER_SRGB, 8, &stamps, error);
-    for (int y = 0; y < paper->height && !status; y++)
-        glint_stamps_row(&stamps, 0, y, paper->width, paper->channels, row_at(paper, 0, y));
-    glint_stamps_free(&stamps);
-    return status;
 }
 
 static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
@@ -479,9 +461,9 @@ static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
     if (l->desc->colorbar)
         draw_bar(l);
     if (!status)
-        status = draw_ink(l, &paper, error);
+        status = glint_ink_check(&l->ink, error);
     if (!status)
-        status = write_canvas(&paper, l->desc->dpi, path, error);
+        status = write_sheet(l, &paper, path, error);
     free(paper.pixels);
     return status;
 }
@@ -509,8 +491,8 @@ static glint_status check_desc(const glint_sheet_desc *desc, const char *path, g
 {
     glint_file_kind kind;
     glint_status status = glint_file_kind_of(path, &kind, error);
-    if (!status && kind != GLINT_FILE_PNG)
-        status = glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png expected, got '%.400s'", path);
+    if (!status && kind != GLINT_FILE_PNG && !glint_file_is_vector(kind))
+        status = glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png, .svg or .pdf expected, got '%.400s'", path);
     if (!status)
         status = glint_check_whole("cell_count", (double)desc->cell_count, 1, 1e6, error);
     if (!status)

@@ -45,6 +45,21 @@ uint32_t glint_font_code(const char **text)
     return code;
 }
 
+size_t glint_font_encode(uint32_t code, char out[4])
+{
+    if (code < ' ' || (code >= 0x7f && code < 0xa0) || (code >= 0xd800 && code < 0xe000) || (code & 0xfffe) == 0xfffe || code > 0x10ffff)
+        code = UNKNOWN;
+    if (code < 0x80) {
+        out[0] = (char)code;
+        return 1;
+    }
+    const size_t size = code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+    for (size_t i = size - 1; i > 0; i--, code >>= 6)
+        out[i] = (char)(0x80 | (code & 0x3f));
+    out[0] = (char)((0xf0 << (4 - size) & 0xff) | code);
+    return size;
+}
+
 const uint8_t *glint_font_next(const char **text) { return glyph_of(glint_font_code(text)); }
 
 size_t glint_font_count(const char *text, size_t size)

@@ -18,6 +18,10 @@ const uint8_t *glint_font_next(const char **text);
 /// Returns the code of the UTF-8 character at *text, and moves *text past it; U+FFFD for an invalid byte.
 uint32_t glint_font_code(const char **text);
 
+/// Writes a character as UTF-8 and returns the number of its bytes. A control character and a code that is no character
+/// are written as U+FFFD, as XML does not allow them.
+size_t glint_font_encode(uint32_t code, char out[4]);
+
 /// Returns whether the font has a character.
 bool glint_font_has(uint32_t code);
 

@@ -6,6 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define BOLD (1 / 24.0) ///< growth of the strokes of bold letters, in font sizes
+
+double glint_letters_growth(const glint_run *run) { return run->bold ? run->em * BOLD : 0; }
+
 #ifdef GLINT_HAVE_FREETYPE
 
 #include <ft2build.h>
@@ -21,11 +25,11 @@
 
 /// Unhinted outlines, since hinting depends on settings of the library.
 #define LOAD (FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP)
-#define BOLD (1 / 24.0) ///< growth of the strokes of bold letters, in font sizes
 
 struct glint_letters {
     FT_Library library;
     FT_Face face;
+    char *path; ///< of the font. Owned
     struct FT_MemoryRec_ memory; ///< FreeType continues after a failed allocation, so this allocator records the
         ///< failure
     bool lost;
@@ -68,8 +72,10 @@ static bool open_path(glint_letters *letters, const char *path)
 {
     if (FT_New_Face(letters->library, path, 0, &letters->face))
         return false;
-    if (FT_IS_SCALABLE(letters->face))
+    if (FT_IS_SCALABLE(letters->face)) {
+        letters->path = note_lost(&letters->memory, strdup(path));
         return true;
+    }
     FT_Done_Face(letters->face);
     letters->face = NULL;
     return false;
@@ -83,6 +89,7 @@ void glint_letters_close(glint_letters *letters)
         FT_Done_Face(letters->face);
     if (letters->library)
         FT_Done_Library(letters->library);
+    free(letters->path);
     free(letters);
 }
 
@@ -181,12 +188,9 @@ static bool next_letter(glint_letters *letters, const char **text, pen *at)
     return !FT_Load_Glyph(face, glyph, LOAD);
 }
 
-/// Returns the growth of a bold letter's width.
-static double bold_of(const glint_run *run) { return run->bold ? run->em * BOLD : 0; }
-
 static double advance_of(const glint_letters *letters, const glint_run *run)
 {
-    return (double)letters->face->glyph->linearHoriAdvance / 65536 + bold_of(run);
+    return (double)letters->face->glyph->linearHoriAdvance / 65536 + glint_letters_growth(run);
 }
 
 double glint_letters_advance(glint_letters *letters, const glint_run *run)
@@ -213,7 +217,7 @@ static FT_Outline *shape_letter(const glint_letters *letters, const glint_run *r
     if (letters->face->glyph->format != FT_GLYPH_FORMAT_OUTLINE || outline->n_points == 0)
         return NULL;
     if (run->bold)
-        FT_Outline_Embolden(outline, (FT_Pos)(bold_of(run) * 64));
+        FT_Outline_Embolden(outline, (FT_Pos)(glint_letters_growth(run) * 64));
     if (run->slant != 0 || run->stretch != 1)
         FT_Outline_Transform(outline, &matrix);
     return outline;
@@ -244,6 +248,27 @@ glint_run_box glint_letters_box(glint_letters *letters, const glint_run *run)
         at.x += advance_of(letters, run);
     }
     return ink;
+}
+
+double glint_letters_place(glint_letters *letters, const glint_run *run, glint_letter *out)
+{
+    const char *text = run->text, *end = text + strnlen(text, run->size);
+    pen at = { 0 };
+    set_size(letters, run->em);
+    for (; text < end; out++) {
+        const char *code = text;
+        const bool loaded = next_letter(letters, &text, &at);
+        *out = (glint_letter) { at.before, glint_font_code(&code), at.x };
+        at.x += loaded ? advance_of(letters, run) : 0;
+    }
+    return at.x;
+}
+
+glint_font_name glint_letters_name(const glint_letters *letters)
+{
+    const FT_Face face = letters->face;
+    return (glint_font_name) { letters->path, face->family_name ? face->family_name : "", (face->style_flags & FT_STYLE_FLAG_BOLD) != 0,
+                               (face->style_flags & FT_STYLE_FLAG_ITALIC) != 0 };
 }
 
 /// Adds a rectangle of coverage. The coverages of two letters in a pixel are treated as independent.
@@ -361,6 +386,18 @@ int glint_letters_width(glint_letters *letters, double em, const char *text, siz
 {
     (void)letters, (void)em, (void)text, (void)size;
     return 0;
+}
+
+double glint_letters_place(glint_letters *letters, const glint_run *run, glint_letter *out)
+{
+    (void)letters, (void)run, (void)out;
+    return 0;
+}
+
+glint_font_name glint_letters_name(const glint_letters *letters)
+{
+    (void)letters;
+    return (glint_font_name) { .path = "" };
 }
 
 double glint_letters_advance(glint_letters *letters, const glint_run *run)

@@ -43,6 +43,23 @@ bool glint_letters_lost(const glint_letters *letters);
 /// the library.
 glint_key glint_letters_key(const glint_letters *letters);
 
+/// A letter of a run, for output as vectors.
+typedef struct glint_letter {
+    uint32_t glyph; ///< its number in the font's file; of the bitmap font, its Unicode code
+    uint32_t code; ///< its Unicode code; U+FFFD for an invalid byte
+    double x; ///< where the letter begins; pixels from the begin of the run
+} glint_letter;
+
+/// The font's file and its names. The strings are borrowed.
+typedef struct glint_font_name {
+    const char *path;
+    const char *family; ///< "DejaVu Sans"
+    bool bold, italic;
+} glint_font_name;
+
+/// Returns the names of an open font.
+glint_font_name glint_letters_name(const glint_letters *letters);
+
 /// Returns "FreeType 2.12.1", a static string; NULL: the build has no FreeType.
 const char *glint_letters_library(void);
 
@@ -50,6 +67,10 @@ const char *glint_letters_library(void);
 void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line);
 /// Returns the width of the first `size` bytes of UTF-8 text, at most to its end; pixels.
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size);
+/// Places the letters of a run. out: glint_font_count(run->text, run->size) letters. Returns the width of the run, pixels.
+double glint_letters_place(glint_letters *letters, const glint_run *run, glint_letter *out);
+/// Returns by how many pixels the strokes of a run are wider than the font's; 0 unless the run is bold.
+double glint_letters_growth(const glint_run *run);
 /// Returns whether the font has a letter.
 bool glint_letters_has(const glint_letters *letters, uint32_t code);
 /// Returns the width of a run, pixels.

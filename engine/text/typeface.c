@@ -6,8 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/// Returns the picture pixels for each pixel of the bitmap font.
-static int scale_of(double em)
+int glint_typeface_scale(double em)
 {
     const int scale = (int)(em / GLINT_FONT_HEIGHT + 0.5);
     return scale < 1 ? 1 : scale;
@@ -22,7 +21,7 @@ glint_typeface glint_typeface_open(glint_letters *letters, double em)
         typeface.height = typeface.above + below;
         return typeface;
     }
-    typeface.scale = scale_of(em);
+    typeface.scale = glint_typeface_scale(em);
     typeface.above = GLINT_FONT_ABOVE * typeface.scale;
     typeface.height = GLINT_FONT_HEIGHT * typeface.scale;
     typeface.line = (GLINT_FONT_HEIGHT + 2) * typeface.scale;
@@ -37,6 +36,19 @@ int glint_typeface_width(const glint_typeface *typeface, const char *text, size_
     return (count < GLINT_SIDE_MAX ? (int)count : GLINT_SIDE_MAX) * GLINT_FONT_WIDTH * typeface->scale;
 }
 
+double glint_typeface_place(const glint_typeface *typeface, const glint_run *run, glint_letter *out)
+{
+    const char *text = run->text, *end = text + strnlen(text, run->size);
+    double x = 0;
+    if (typeface->letters)
+        return glint_letters_place(typeface->letters, run, out);
+    for (; text < end; x += GLINT_FONT_WIDTH * glint_typeface_scale(run->em)) {
+        const uint32_t code = glint_font_code(&text);
+        *out++ = (glint_letter) { code, code, x };
+    }
+    return x;
+}
+
 bool glint_typeface_has(const glint_typeface *typeface, uint32_t code)
 {
     return typeface->letters ? glint_letters_has(typeface->letters, code) : glint_font_has(code);
@@ -46,7 +58,7 @@ double glint_typeface_advance(const glint_typeface *typeface, const glint_run *r
 {
     if (typeface->letters)
         return glint_letters_advance(typeface->letters, run);
-    return (double)glint_font_count(run->text, run->size) * GLINT_FONT_WIDTH * scale_of(run->em);
+    return (double)glint_font_count(run->text, run->size) * GLINT_FONT_WIDTH * glint_typeface_scale(run->em);
 }
 
 /// Returns the pixels of a glyph of the bitmap font, in pixels of that font: left, right, top and bottom edge. False: it
@@ -70,7 +82,7 @@ static bool glyph_box(const uint8_t *glyph, int box[4])
 static glint_run_box bitmap_ink(const glint_run *run)
 {
     const char *text = run->text, *end = text + strnlen(text, run->size);
-    const double scale = scale_of(run->em), tall = scale * run->stretch;
+    const double scale = glint_typeface_scale(run->em), tall = scale * run->stretch;
     glint_run_box ink = { 0 };
     bool has_ink = false;
     for (int i = 0, box[4]; text < end; i++) {
@@ -103,7 +115,7 @@ static void cover(glint_mask *mask, int x, int y, int width, int height)
 static void draw_bitmap(const glint_run *run, glint_mask *mask)
 {
     const char *text = run->text, *end = text + strnlen(text, run->size);
-    const int scale = scale_of(run->em), wide = scale + (run->bold ? (scale + 1) / 2 : 0);
+    const int scale = glint_typeface_scale(run->em), wide = scale + (run->bold ? (scale + 1) / 2 : 0);
     const double tall = scale * run->stretch;
     double pen = floor(run->x + 0.5);
     for (; text < end && pen < mask->width; pen += GLINT_FONT_WIDTH * scale) {

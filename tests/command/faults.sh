@@ -128,6 +128,7 @@ for kind in alloc write; do
     each $kind "a mesh, a texture" mesh.lua -o out/m.png -t 1 -q
     STEP=$((7 * ${STEP:-7})) each $kind "the dialect" --dialect gr room.lua -t 1 -q # compiled anew by each run
     each $kind "an array" film.lua -f 1 -o out/n.npy -t 1 -q
+    each $kind "vectors" still.lua -o out/w.svg -t 1 -q
     if "$glint" --version --verbose | grep -q '\.exr'; then
         each $kind "channels" film.lua -f 1 -o out/c.exr --passes depth -t 1 -q
     fi

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# -o figure.svg and -o figure.pdf: the look of the .png, text that can be selected, equal bytes on each run, refusals.
+set -u
+root=$PWD
+glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+case ${LUA_CPATH:-} in /*) ;; *) export LUA_CPATH="$root/${BUILD:-build}/?.so;;" ;; esac
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+bad=0 good=0
+
+# check WHAT COMMAND...
+check() {
+    local what=$1
+    shift
+    if "$@" >said 2>&1; then
+        good=$((good + 1))
+    else
+        echo "not ok - $what"
+        sed 's/^/    /' said
+        bad=$((bad + 1))
+    fi
+}
+refuses() { # refuses TEXT ARGUMENT...
+    local text=$1
+    shift
+    ! "$glint" -q "$@" 2>err && grep -qF -- "$text" err && ! ls none.* 2>/dev/null
+}
+has() { command -v "$1" >/dev/null || { echo "skip: no $1"; return 1; }; }
+
+cat >figure.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { marks = true }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 9 }, at = { 0, 0, 0 } }, ambient = 0.1, background = { 0.02, 0.03, 0.06 },
+  glint.point_light { position = { 3, 8, 4 } },
+  glint.sphere { center = { 0, 0, 0 }, radius = 2, material = glint.material { diffuse = { 0.6, 0.3, 0.2 } } } }
+if P.marks then
+  scene:add(glint.label { text = "Fläche <A & B>\nsecond\1 line", background = "black", opacity = 0.5, size = 14 })
+  scene:add(glint.colorbar { map = "magma", low = 0, high = 1, title = "heat" })
+  scene:add(glint.arrow { from = { -4, -1, 0 }, to = { 3, 2, 0 }, label = "ray", hidden = "dashed", color = "yellow" })
+  scene:add(glint.arc { at = { 0, 0, 2 }, from = { 1, 0, 0 }, to = { 0, 1, 0 }, radius = 1, label = "φ" })
+  scene:add(glint.axes {})
+end
+return glint.animation { scene = scene, frames = 1, width = 320, height = 240, frame = function() end }
+LUA
+font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf # rsvg-convert has no bitmap font
+[ -f $font ] && "$glint" --version --verbose | grep -q FreeType && export GLINT_FONT=$font
+compare() { "${LUA:-lua5.4}" "$root/tests/command/vectors.lua" "$@"; }
+
+"$glint" -q figure.lua -o a.png && "$glint" -q figure.lua -o plain.png -D marks=false || exit 1
+"$glint" -q figure.lua -o a.svg && "$glint" -q figure.lua -o b.svg -t 1 || exit 1
+check "an .svg: the same bytes again" cmp a.svg b.svg
+check "text of an .svg" grep -qF '>Fläche &lt;A &amp; B&gt;</text>' a.svg
+check "a control character of a text" grep -qF $'>second\xef\xbf\xbd line</text>' a.svg
+check "a pixel is a point" grep -qF 'width="320pt" height="240pt" viewBox="0 0 320 240"' a.svg
+"$glint" -q figure.lua -o dpi.svg --dpi 300 --size 100x50
+check "72 / dpi points a pixel" grep -qF 'width="24pt" height="12pt" viewBox="0 0 100 50"' dpi.svg
+"$glint" -q figure.lua -o part.svg --region 100,60,50,40
+check "a part keeps the positions" grep -qF 'viewBox="100 60 50 40"' part.svg
+LC_ALL=de_DE.UTF-8 "$glint" -q figure.lua -o locale.svg && check "any locale" cmp a.svg locale.svg
+if has rsvg-convert; then
+    rsvg-convert -w 320 -h 240 a.svg -o svg.png
+    check "an .svg is well formed" test -s svg.png
+    [ -z "${GLINT_FONT##*.ttf}" ] && check "an .svg looks like the .png" compare plain.png a.png svg.png
+    "$glint" -q figure.lua -o plain16.png -D marks=false --bits 16 && "$glint" -q figure.lua -o deep.svg -D marks=false --bits 16
+    sed -n 's/.*base64,\([^"]*\)".*/\1/p' deep.svg | base64 -d >embedded.png
+    check "16 bits in an .svg" "$glint" compare plain16.png embedded.png
+fi
+check "other passes" "$glint" -q figure.lua -o passes.svg --passes depth
+check "a pass in a file of its own" test -s passes.depth.svg
+
+for i in 1 2 3; do cp a.png cell_$i.png; done
+check "a sheet" "$glint" -q sheet cell_1.png cell_2.png cell_3.png -o sheet.svg --title 'Δs & n°' --colorbar magma,0,1,T
+check "a sheet's title" grep -qF '>Δs &amp; n°</text>' sheet.svg
+"$glint" -q sheet cell_1.png cell_2.png -o once.svg --transparent && "$glint" -q sheet cell_1.png cell_2.png -o twice.svg --transparent
+check "a transparent sheet, again" cmp once.svg twice.svg
+check "another ending" refuses '.svg, .pdf' figure.lua -o none.ps
+
+if "$glint" --version --verbose | grep -q '\.pdf'; then
+    "$glint" -q figure.lua -o a.pdf && "$glint" -q figure.lua -o b.pdf -t 1
+    check "a .pdf: the same bytes again" cmp a.pdf b.pdf
+    check "no dates" bash -c '! grep -qa "CreationDate\|ModDate" a.pdf'
+    check "16 bits are refused" refuses 'bits: 8 expected for a .pdf, got 16' figure.lua -o none.pdf --bits 16
+    check "linear values are refused" refuses 'transfer: srgb expected for a .pdf' figure.lua -o none.pdf --transfer linear
+    check "a sheet as .pdf" "$glint" -q sheet cell_1.png cell_2.png -o sheet.pdf --title 'Δs & n°'
+    "$glint" -q figure.lua -o clear.pdf --alpha -D marks=false
+    if has pdftotext; then
+        check "text of a .pdf" bash -c 'pdftotext a.pdf - | grep -qxF "Fläche <A & B>"'
+        check "text of a sheet" bash -c 'pdftotext sheet.pdf - | grep -qxF "Δs & n°"'
+        GLINT_FONT=bitmap "$glint" -q figure.lua -o bitmap.pdf
+        check "text of the bitmap font" bash -c 'pdftotext bitmap.pdf - | grep -qxF "Fläche <A & B>"'
+        check "alpha" bash -c 'pdfimages -list clear.pdf | grep -qw smask'
+        pdfimages -png a.pdf a
+        check "the picture has the same values" "$glint" compare plain.png a-000.png
+        pdftocairo -png -singlefile -r 72 a.pdf pdf
+        check "a .pdf looks like the .png" compare plain.png a.png pdf.png
+    fi
+else
+    check "no cairo" refuses 'this build has no cairo' figure.lua -o none.pdf
+fi
+echo "$good passed, $bad failed"
+[ "$bad" -eq 0 ]
