@@ -1,25 +1,59 @@
-// light: the effect of one light at each point, before shadows and colours. The geometry is real; square root,
-// division and logarithm follow in float for the whole group, because float is accurate enough for them. This file
-// has spots and area lights, and functions for plain.h and lit_surface.h; the stage itself is in plain.h. Contract:
-// stages.h.
+// light: the effect of a light at points: one light, several lights that differ only in position, a spot, or the
+// samples of an area light. The geometry is real; square root, division and logarithm follow in float, because float
+// is accurate enough for them. The points come from memory here, and from the hits in lit_surface.h; the results are
+// stored here, and added up in soft_light.h. Contract: stages.h.
 #ifndef GLINT_LIGHT_LIGHT_H
 #define GLINT_LIGHT_LIGHT_H
 
 #include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
 #include "engine/stages/light/cone.h"
 #include "engine/stages/light/light_sample.h"
 #include "engine/stages/simd/real.h"
 
-/// The results of one light or sample for a group.
-typedef struct R(lit_group) {
-    _Alignas(64) real along[GLINT_GROUP]; ///< n.l, in the light's units
-    _Alignas(64) real distance2[GLINT_GROUP];
-    _Alignas(64) real x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and the same minus 1
-    _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< for a spot:
-        ///< cosine of the angle to the axis, the cosine minus 1, and the smooth step
-    unsigned lit, shiny;
-    vf brightest; ///< maximum over the groups so far, for each lane
-} R(lit_group);
+#define LIT_PARTS (VF / VR) ///< number of vectors of real per vector of float
+#define LIT_LANES ((1u << VF) - 1) ///< all lanes of a vector of float
+
+INNER vf R(join)(const vr *x)
+{
+#if GLINT_REAL == 64
+    return f_join(x[0], x[1]);
+#else
+    return x[0];
+#endif
+}
+
+INNER unsigned R(join_bits)(const rm mask[LIT_PARTS])
+{
+    unsigned bits = 0;
+    for (int j = 0; j < LIT_PARTS; j++)
+        bits |= rm_bits(mask[j]) << j * VR;
+    return bits;
+}
+
+/// The highlights of a group's lanes.
+typedef struct R(gloss) {
+    unsigned phong, blinn, cosine; ///< lanes whose material has a Phong highlight; a Blinn-Phong highlight; a lobe
+        ///< with the factor n.l
+    _Alignas(64) float shininess[GLINT_GROUP];
+    _Alignas(64) float least[GLINT_GROUP]; ///< `least` of each lane's material, if `sparing`; otherwise 0
+} R(gloss);
+
+/// VF points of a group.
+typedef struct R(lit_points) {
+    vr point[LIT_PARTS][3], normal[LIT_PARTS][3];
+    vr direction[LIT_PARTS][3], a[LIT_PARTS], nv[LIT_PARTS]; ///< a = length2(direction); only set if some lane is
+        ///< glossy
+} R(lit_points);
+
+/// The effect of a light or sample at VF points.
+typedef struct R(lit_lanes) {
+    unsigned ahead, lit, shiny; ///< lanes that have the light above their horizon; of these, the lanes that
+        ///< it may reach; of these, the lanes with a highlight
+    vf cosine, weight, log2; ///< n.l, attenuation, and log2 of r.v or n.h
+} R(lit_lanes);
+
+// ---- The highlight ----
 
 /// Computes (r.v)^2 as num / den. Returns the lanes with a highlight.
 INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
@@ -32,142 +66,157 @@ INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
 
 /// Computes (n.h)^2 likewise, from the same h in num and den. At grazing light h is a difference with few digits
 /// left: if it were rounded differently in num and den, the error would grow by 1 / |h|^2, and then by the shininess.
-INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a, vr *num, vr *den)
+INNER rm R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a, vr *num, vr *den)
 {
     const vr w = r_sqrt(l2 * a);
     const vr h[3] = { a * l[0] - w * d[0], a * l[1] - w * d[1], a * l[2] - w * d[2] };
     const vr nh = DOT(n, h);
     *num = nh * nh;
     *den = DOT(h, h);
-    return nh;
+    return rm_and(r_lt(r_set(0), nh), r_lt(r_set(0), *den));
 }
 
-/// Data shared by a light's samples: the surfaces of one group, and one vector of the group's lanes.
-typedef struct R(lit_point) {
-    unsigned phong, blinn; ///< lanes whose material has a Phong highlight; a Blinn-Phong highlight
-    _Alignas(64) float least[GLINT_GROUP]; ///< `least` of each lane's material, if `sparing`; otherwise 0
-    R(group_directions) directions;
-    vr point[3], normal[3];
-    bool aimed; ///< true: the next field is set
-    vr direction[3];
-    bool viewed; ///< true: the next fields are set
-    vr a, nv; ///< a = length2(direction)
-} R(lit_point);
-
-INNER void R(view_lanes)(const glint_light_args *args, size_t at, int i, R(lit_point) * surface)
+/// Computes the lit lanes with a highlight, and log2 of r.v or n.h there. i: the first lane's number in the group.
+INNER void R(find_highlight)(const R(gloss) * gloss, const R(lit_points) * p, int i, vr l[LIT_PARTS][3],
+                             const vr l2[LIT_PARTS], const vr nl[LIT_PARTS], R(lit_lanes) * out)
 {
-    if (surface->viewed)
-        return;
-    if (!surface->aimed)
-        R(load_direction)(surface->directions, args->direction, at, i, surface->direction);
-    surface->a = DOT(surface->direction, surface->direction);
-    surface->nv = -DOT(surface->normal, surface->direction);
-    surface->viewed = true;
-}
-
-/// Returns 1 / (c0 + (c1 d + c2 d^2)).
-INNER vr R(fall_off)(const glint_light_args *args, vr distance)
-{
-    const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
-    return r_set(1) / (c0 + (c1 * distance + c2 * (distance * distance)));
-}
-
-/// Computes the real part of one vector of lanes, for sample s. `kind` is a constant.
-INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s,
-                          const R(light_sample_set) * light_samples, size_t at, int i, unsigned open,
-                          R(lit_point) * surface, R(lit_group) * group)
-{
-    const vr zero = r_set(0), scale = r_set(args->scale);
-    vr l[3], m = zero;
-    for (int k = 0; k < 3; k++) {
-        if (kind == LIGHT_CONE) {
-            l[k] = r_load(light_samples->direction[s][k] + i);
-            continue;
-        }
-        l[k] = kind == LIGHT_LIGHT_SAMPLE ? r_load(light_samples->light_sample[s].position[k] + i)
-                                          : r_set(args->position[k]);
-        if (!args->directional)
-            l[k] = (l[k] - surface->point[k]) * scale;
-    }
-    vr l2 = DOT(l, l), nl = DOT(surface->normal, l);
-    rm ahead = r_lt(zero, nl);
-    const bool aimed = kind == LIGHT_LIGHT_SAMPLE && args->light_sample[s]->emission != GLINT_EMIT_ALL;
-    if (kind == LIGHT_SPOT)
-        ahead = rm_and(
-            ahead, R(in_cone)(args->spot, l, l2, group->cone_cosine + i, group->cone_less_1 + i, group->cone_step + i));
-    if (aimed)
-        ahead = rm_and(ahead, R(in_front)(args->light_sample[s], &light_samples->light_sample[s], i, l, &m));
-    const unsigned lit = rm_bits(ahead) & open >> i & ((1u << VR) - 1);
-    group->lit |= lit << i;
-    if (!lit)
-        return;
-    r_store(group->along + i, nl);
-    r_store(group->distance2 + i, l2);
-    if (args->attenuated) {
-        vr attenuation;
-        if (kind == LIGHT_CONE)
-            attenuation = R(fall_off)(args, r_load(light_samples->far[s] + i));
-        else
-            attenuation = R(fall_off)(args, r_sqrt(l2) / scale);
-        if (aimed && args->light_sample[s]->emission != GLINT_EMIT_FRONT)
-            attenuation = attenuation * (m / (l2 * r_sqrt(l2)));
-        if (kind == LIGHT_CONE)
-            attenuation = attenuation * r_load(light_samples->weight + i);
-        r_store_f(args->attenuation[s] + at + i, attenuation);
-    }
-    const unsigned phong = surface->phong >> i & lit, blinn = GLINT_WITH_BLINN ? surface->blinn >> i & lit : 0;
+    const unsigned phong = gloss->phong >> i & out->lit, blinn = GLINT_WITH_BLINN ? gloss->blinn >> i & out->lit : 0;
+    vr num[LIT_PARTS], den[LIT_PARTS], x[LIT_PARTS], less_1[LIT_PARTS];
+    rm some[LIT_PARTS];
     if (!(phong | blinn))
         return;
-    R(view_lanes)(args, at, i, surface);
-    const vr a = surface->a, nv = surface->nv, lv = -DOT(l, surface->direction);
-    vr num, den;
-    rm some = rm_and(rm_from_bits(phong), R(phong_parts)(nl, nv, lv, l2 * a, &num, &den));
-    if (blinn) {
-        vr blinn_num, blinn_den;
-        const rm mask = rm_from_bits(blinn);
-        const vr nh = R(blinn_parts)(surface->normal, l, surface->direction, l2, a, &blinn_num, &blinn_den);
-        some = rm_or(some, rm_and(mask, rm_and(r_lt(zero, nh), r_lt(zero, blinn_den))));
-        num = r_select(mask, blinn_num, num);
-        den = r_select(mask, blinn_den, den);
+    for (int j = 0; j < LIT_PARTS; j++) {
+        const unsigned blinn_lanes = blinn >> j * VR & ((1u << VR) - 1);
+        some[j] = R(phong_parts)(nl[j], p->nv[j], -DOT(l[j], p->direction[j]), l2[j] * p->a[j], &num[j], &den[j]);
+        if (blinn_lanes) {
+            vr blinn_num, blinn_den;
+            const rm mask = rm_from_bits(blinn_lanes);
+            const rm bright =
+                R(blinn_parts)(p->normal[j], l[j], p->direction[j], l2[j], p->a[j], &blinn_num, &blinn_den);
+            some[j] = rm_or(rm_and(mask, bright), rm_andnot(some[j], mask));
+            num[j] = r_select(mask, blinn_num, num[j]);
+            den[j] = r_select(mask, blinn_den, den[j]);
+        }
+        // NaN, and lanes in which den overflows, stay, and the division handles them
+        some[j] = rm_andnot(some[j], r_lt(num[j], R(load_wide)(gloss->least + i + j * VR) * den[j]));
     }
-    some = rm_andnot(some, r_lt(num, R(load_wide)(surface->least + i) * den));
-    if (!rm_bits(some))
+    if (!(R(join_bits)(some) & (phong | blinn)))
         return;
-    const vr x = r_min(num / den, r_set(1));
-    r_store(group->x + i, x);
-    r_store(group->x_less_1 + i, x - r_set(1));
-    group->shiny |= rm_bits(rm_and(some, r_le(r_set(0x1p-126), x))) << i;
+    for (int j = 0; j < LIT_PARTS; j++) {
+        x[j] = r_min(num[j] / den[j], r_set(1));
+        less_1[j] = x[j] - r_set(1);
+        some[j] = rm_and(some[j], r_le(r_set(0x1p-126), x[j]));
+    }
+    out->shiny = R(join_bits)(some) & (phong | blinn);
+    const fm shiny = fm_from_bits(out->shiny);
+    const vf log2 = f_set(0.5f) * f_log2(f_select(shiny, R(join)(x), f_set(1)), R(join)(less_1));
+    out->log2 = f_select(shiny, log2, f_set(GLINT_NO_SPECULAR));
 }
 
-/// Computes the float part of one group.
-INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at, R(lit_group) * group)
+// ---- One light ----
+
+/// Computes the vectors l from the points to light or sample s.
+INNER void R(aim)(const glint_light_args *args, const int kind, uint32_t s, const R(light_sample_set) * samples, int i,
+                  const R(lit_points) * p, vr l[LIT_PARTS][3])
 {
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));
-        vf cosine = R(load_narrow)(group->along + i);
-        if (!args->directional)
-            cosine = cosine / f_sqrt(R(load_narrow)(group->distance2 + i));
-        f_store(args->cosine[s] + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
-        if (args->attenuated) {
-            vf attenuation = f_min(f_load(args->attenuation[s] + at + i), f_set(GLINT_ATTENUATION_MAX));
-            if (kind == LIGHT_SPOT)
-                attenuation =
-                    attenuation * R(cone_factor)(args->spot, lit, f_load(group->cone_cosine + i),
-                                                 f_load(group->cone_less_1 + i), f_load(group->cone_step + i));
-            f_store(args->attenuation[s] + at + i, f_select(lit, attenuation, f_set(0)));
+    const double *position = kind == LIGHT_PLAIN && args->positions[0] ? args->positions[s] : args->position;
+    const bool directional = kind <= LIGHT_SPOT && args->directional;
+    const vr scale = r_set(args->scale);
+    for (int j = 0; j < LIT_PARTS; j++)
+        for (int k = 0; k < 3; k++) {
+            if (kind == LIGHT_CONE)
+                l[j][k] = r_load(samples->direction[s][k] + i + j * VR);
+            else if (kind == LIGHT_SAMPLE)
+                l[j][k] = r_load(samples->light_sample[s].position[k] + i + j * VR);
+            else
+                l[j][k] = r_set(position[k]);
         }
-        const unsigned shiny_lanes = group->shiny >> i & ((1u << VF) - 1);
-        if (args->highlights && !shiny_lanes) {
-            f_store(args->log2_specular[s] + at + i, f_set(GLINT_NO_SPECULAR));
-        } else if (args->highlights) {
-            const fm shiny = fm_from_bits(shiny_lanes);
-            vf log2 =
-                f_log2(f_select(shiny, R(load_narrow)(group->x + i), f_set(1)), R(load_narrow)(group->x_less_1 + i));
-            log2 = f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
-            f_store(args->log2_specular[s] + at + i, log2);
-            group->brightest = f_max(group->brightest, log2);
-        }
+    for (int j = 0; kind != LIGHT_CONE && !directional && j < LIT_PARTS; j++)
+        for (int k = 0; k < 3; k++)
+            l[j][k] = (l[j][k] - p->point[j][k]) * scale;
+}
+
+/// Returns the attenuation, 1 / (c0 + (c1 d + c2 d^2)), with the factors of area lights. m: as computed by in_front.
+INNER vf R(attenuate)(const glint_light_args *args, const int kind, const bool radiant, uint32_t s,
+                      const R(light_sample_set) * samples, int i, const vr l2[LIT_PARTS], const vr m[LIT_PARTS])
+{
+    const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
+    vr w[LIT_PARTS];
+    for (int j = 0; j < LIT_PARTS; j++) {
+        vr d;
+        if (kind == LIGHT_CONE)
+            d = r_load(samples->far[s] + i + j * VR);
+        else
+            d = r_sqrt(l2[j]) / r_set(args->scale);
+        w[j] = r_set(1) / (c0 + (c1 * d + c2 * (d * d)));
+        if (radiant)
+            w[j] = w[j] * (m[j] / (l2[j] * r_sqrt(l2[j])));
+        if (kind == LIGHT_CONE)
+            w[j] = w[j] * r_load(samples->weight + i + j * VR);
     }
+    return f_min(R(join)(w), f_set(GLINT_ATTENUATION_MAX));
+}
+
+/// Computes light or sample s at the points of the lanes from i on, of which it reaches `open`. Constants: kind;
+/// glossy: some lane may have a highlight.
+INNER R(lit_lanes) R(light_lanes)(const glint_light_args *args, const int kind, const bool glossy, uint32_t s,
+                                  const R(light_sample_set) * samples, const R(gloss) * gloss, const R(lit_points) * p,
+                                  int i, unsigned open)
+{
+    const uint32_t emission = kind == LIGHT_SAMPLE ? args->light_sample[0]->emission : GLINT_EMIT_ALL;
+    const bool directional = kind <= LIGHT_SPOT && args->directional;
+    vr l[LIT_PARTS][3], l2[LIT_PARTS], nl[LIT_PARTS], m[LIT_PARTS], cone[3][LIT_PARTS];
+    rm ahead[LIT_PARTS];
+    R(aim)(args, kind, s, samples, i, p, l);
+    for (int j = 0; j < LIT_PARTS; j++) {
+        l2[j] = DOT(l[j], l[j]);
+        nl[j] = DOT(p->normal[j], l[j]);
+        ahead[j] = r_lt(r_set(0), nl[j]);
+        m[j] = r_set(0);
+        if (kind == LIGHT_SPOT)
+            ahead[j] = rm_and(ahead[j], R(in_cone)(args->spot, l[j], l2[j], &cone[0][j], &cone[1][j], &cone[2][j]));
+        if (emission != GLINT_EMIT_ALL)
+            ahead[j] = rm_and(ahead[j], R(in_front)(emission, &samples->light_sample[s], i + j * VR, l[j], &m[j]));
+    }
+    R(lit_lanes) out = { .ahead = R(join_bits)(ahead), .weight = f_set(1), .log2 = f_set(GLINT_NO_SPECULAR) };
+    out.lit = out.ahead & open;
+    if (!out.lit)
+        return out;
+    out.cosine = R(join)(nl);
+    if (!directional)
+        out.cosine = out.cosine / f_sqrt(R(join)(l2));
+    out.cosine = f_min(out.cosine, f_set(1));
+    if (args->attenuated)
+        out.weight = R(attenuate)(args, kind, emission > GLINT_EMIT_FRONT, s, samples, i, l2, m);
+    if (kind == LIGHT_SPOT)
+        out.weight = out.weight * R(cone_factor)(args->spot, fm_from_bits(out.lit), R(join)(cone[0]), R(join)(cone[1]),
+                                                 R(join)(cone[2]));
+    if (glossy)
+        R(find_highlight)(gloss, p, i, l, l2, nl, &out);
+    return out;
+}
+
+// ---- The lights of a group ----
+
+/// Stores the results of light or sample s for the lanes from at on.
+INNER void R(store_lit)(const glint_light_args *args, uint32_t s, size_t at, const R(lit_lanes) * lanes)
+{
+    const fm lit = fm_from_bits(lanes->lit);
+    f_store(args->cosine[s] + at, f_select(lit, lanes->cosine, f_set(0)));
+    if (args->attenuated)
+        f_store(args->attenuation[s] + at, f_select(lit, lanes->weight, f_set(0)));
+    if (args->highlights)
+        f_store(args->log2_specular[s] + at, lanes->log2);
+}
+
+/// Stores the lit lanes of a group, and the results of its vectors without lit lanes, which are not computed.
+INNER void R(end_lit)(const glint_light_args *args, uint32_t s, uint32_t g, unsigned lit)
+{
+    const R(lit_lanes) none = { .lit = 0, .cosine = f_set(0), .weight = f_set(0), .log2 = f_set(GLINT_NO_SPECULAR) };
+    args->lit[s][g] = (uint16_t)lit;
+    for (int i = 0; lit && i < GLINT_GROUP; i += VF)
+        if (!(lit >> i & LIT_LANES))
+            R(store_lit)(args, s, (size_t)g * GLINT_GROUP + (size_t)i, &none);
 }
 
 INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, vf brightest)
@@ -178,88 +227,122 @@ INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, vf brighte
 
 /// Sets the highlight of lanes that show one material.
 INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_material *material, unsigned lanes,
-                         R(lit_point) * surface)
+                         R(gloss) * gloss)
 {
     if (material->highlight == GLINT_HIGHLIGHT_PHONG)
-        surface->phong |= lanes;
+        gloss->phong |= lanes;
     else if (GLINT_WITH_BLINN && material->highlight == GLINT_HIGHLIGHT_BLINN)
-        surface->blinn |= lanes;
+        gloss->blinn |= lanes;
+    else
+        return;
+    gloss->cosine |= material->lobe == GLINT_LOBE_POWER_COSINE ? lanes : 0;
     const vf least = f_set(args->sparing ? material->least : 0);
-    for (int i = 0; i < GLINT_GROUP; i += VF)
-        f_store(surface->least + i,
-                f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), least, f_load(surface->least + i)));
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm mask = fm_from_bits(lanes >> i & LIT_LANES);
+        f_store(gloss->shininess + i, f_select(mask, f_set(material->shininess), f_load(gloss->shininess + i)));
+        f_store(gloss->least + i, f_select(mask, least, f_load(gloss->least + i)));
+    }
 }
 
 /// Sets the highlights of the lanes `rest`, material by material.
-INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned rest, R(lit_point) * surface)
+INNER void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned rest, R(gloss) * gloss)
 {
-    surface->phong = surface->blinn = 0;
+    gloss->phong = gloss->blinn = gloss->cosine = 0;
     while (args->highlights && rest) {
         const uint32_t material = args->material[at + (unsigned)__builtin_ctz(rest)];
         const unsigned lanes = lanes_equal(args->material + at, material);
-        R(sort_lanes)(args, &args->materials[material], lanes, surface);
+        R(sort_lanes)(args, &args->materials[material], lanes, gloss);
         rest &= ~lanes;
     }
 }
 
-/// Computes the real part of a group for each sample. The surfaces must be known.
-INNER void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
-                          R(light_sample_set) * light_samples, R(group_cursor) cursor, R(lit_point) * surface,
-                          R(lit_group) * groups)
+/// Loads the points of the lanes from i on; glossy: with their directions.
+INNER void R(load_points)(const glint_light_args *args, R(group_cursor) cursor, int i, const bool glossy,
+                          R(lit_points) * p)
 {
     const size_t at = (size_t)cursor.g * GLINT_GROUP;
-    const unsigned open = args->hits[cursor.g] & ~(unsigned)args->dark[cursor.g];
-    for (uint32_t s = 0; s < samples; s++)
-        groups[s].lit = groups[s].shiny = 0;
-    if (!open)
-        return;
-    surface->directions = R(directions_of)(args->camera, cursor.x, cursor.y);
-    R(sort_highlights)(args, at, open, surface);
-    if (kind == LIGHT_CONE)
-        R(place_in_cone)(args->light_sample, samples, args->scale, args->point, args->normal, at, light_samples);
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        R(load3)(args->point, at + i, surface->point);
-        R(load3)(args->normal, at + i, surface->normal);
-        surface->aimed = surface->viewed = false;
-        for (uint32_t s = 0; s < samples; s++)
-            R(light_lanes)(args, kind, s, light_samples, at, i, open, surface, &groups[s]);
+    const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
+    for (int j = 0; j < LIT_PARTS; j++) {
+        R(load3)(args->point, at + (size_t)(i + j * VR), p->point[j]);
+        R(load3)(args->normal, at + (size_t)(i + j * VR), p->normal[j]);
+        if (!glossy)
+            continue;
+        R(load_direction)(directions, args->direction, at, i + j * VR, p->direction[j]);
+        p->a[j] = DOT(p->direction[j], p->direction[j]);
+        p->nv[j] = -DOT(p->normal[j], p->direction[j]);
     }
 }
 
-/// Computes all groups. `kind` is a constant, and so is `samples` for a light without samples.
-static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
-                                   R(light_sample_set) * light_samples, R(lit_group) * groups)
+/// Computes all lights at the points of the lanes from i on. Constants: kind, glossy.
+INNER void R(light_points)(const glint_light_args *args, const int kind, const bool glossy,
+                           const R(light_sample_set) * samples, const R(gloss) * gloss, R(group_cursor) cursor, int i,
+                           unsigned open, unsigned lit[], vf brightest[])
 {
-    R(lit_point) surface = { 0 };
-    for (uint32_t s = 0; s < samples; s++)
-        groups[s].brightest = f_set(GLINT_NO_SPECULAR);
-    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor)) {
-        R(light_group)(args, kind, samples, light_samples, cursor, &surface, groups);
-        for (uint32_t s = 0; s < samples; s++) {
-            args->lit[s][cursor.g] = (uint16_t)groups[s].lit;
-            if (groups[s].lit)
-                R(finish_light)(args, kind, s, (size_t)cursor.g * GLINT_GROUP, &groups[s]);
-        }
+    R(lit_points) p;
+    R(load_points)(args, cursor, i, glossy, &p);
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        const R(lit_lanes) lanes = R(light_lanes)(args, kind, glossy, s, samples, gloss, &p, i, open >> i & LIT_LANES);
+        if (!lanes.lit)
+            continue;
+        R(store_lit)(args, s, (size_t)cursor.g * GLINT_GROUP + (size_t)i, &lanes);
+        lit[s] |= lanes.lit << i;
+        brightest[s] = f_max(brightest[s], lanes.log2);
     }
-    for (uint32_t s = 0; s < samples; s++)
-        R(say_brightest)(args, s, groups[s].brightest);
+}
+
+/// Computes all lights for one group. `kind` is a constant.
+INNER void R(light_group)(const glint_light_args *args, const int kind, R(light_sample_set) * samples, R(gloss) * gloss,
+                          R(group_cursor) cursor, vf brightest[])
+{
+    const size_t at = (size_t)cursor.g * GLINT_GROUP;
+    const unsigned open = args->hits[cursor.g] & ~(unsigned)args->dark[cursor.g];
+    unsigned lit[GLINT_LIGHT_CHUNK];
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        lit[s] = 0;
+    if (open && kind == LIGHT_CONE)
+        R(place_in_cone)(args->light_sample, args->sample_count, args->scale, args->point, args->normal, at, samples);
+    if (open)
+        R(sort_gloss)(args, at, open, gloss);
+    for (int i = 0; open && i < GLINT_GROUP; i += VF)
+        if ((gloss->phong | gloss->blinn) >> i & LIT_LANES)
+            R(light_points)(args, kind, true, samples, gloss, cursor, i, open, lit, brightest);
+        else
+            R(light_points)(args, kind, false, samples, gloss, cursor, i, open, lit, brightest);
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        R(end_lit)(args, s, cursor.g, lit[s]);
+}
+
+/// Computes all groups. `kind` is a constant.
+INNER void R(light_groups)(const glint_light_args *args, const int kind, R(light_sample_set) * samples)
+{
+    R(gloss) gloss = { .phong = 0 };
+    vf brightest[GLINT_LIGHT_CHUNK];
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        brightest[s] = f_set(GLINT_NO_SPECULAR);
+    for (R(group_cursor) cursor = { 0 }; cursor.g < args->group_count; R(next_group)(args->camera, &cursor))
+        R(light_group)(args, kind, samples, &gloss, cursor, brightest);
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        R(say_brightest)(args, s, brightest[s]);
 }
 
 static void R(light_area)(const glint_light_args *args)
 {
-    R(light_sample_set) light_samples;
-    R(lit_group) groups[GLINT_LIGHT_CHUNK] = { { .lit = 0 } };
-    R(load_light_samples)(args->light_sample, args->sample_count, &light_samples);
+    R(light_sample_set) samples;
+    R(load_light_samples)(args->light_sample, args->sample_count, &samples);
     if (R(is_cone)(args->light_sample[0]))
-        R(light_groups)(args, LIGHT_CONE, args->sample_count, &light_samples, groups);
+        R(light_groups)(args, LIGHT_CONE, &samples);
     else
-        R(light_groups)(args, LIGHT_LIGHT_SAMPLE, args->sample_count, &light_samples, groups);
+        R(light_groups)(args, LIGHT_SAMPLE, &samples);
 }
 
-static void R(light_spot)(const glint_light_args *args)
+static void R(light)(const glint_light_args *args)
 {
-    R(lit_group) group = { .lit = 0 };
-    R(light_groups)(args, LIGHT_SPOT, 1, NULL, &group);
+    if (GLINT_WITH_AREA && args->light_sample[0])
+        R(light_area)(args);
+    else if (GLINT_WITH_SPOT && args->spot)
+        R(light_groups)(args, LIGHT_SPOT, NULL);
+    else
+        R(light_groups)(args, LIGHT_PLAIN, NULL);
 }
 
 #endif

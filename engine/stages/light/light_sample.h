@@ -1,14 +1,14 @@
 // light_sample: the additions of spot and area lights to a light's arithmetic. Contract: stages.h, at
 // glint_light_args.
-#ifndef GLINT_LIGHT_LIGHT_SAMPLE_H
-#define GLINT_LIGHT_LIGHT_SAMPLE_H
+#ifndef GLINT_LIGHT_SAMPLE_H
+#define GLINT_LIGHT_SAMPLE_H
 
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
 
 #define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
 #define LIGHT_SPOT 1
-#define LIGHT_LIGHT_SAMPLE 2
+#define LIGHT_SAMPLE 2
 #define LIGHT_CONE 3 // lights whose samples are computed for each group
 
 /// One sample's positions and normals for all lanes, in the type that the stage computes with.
@@ -59,7 +59,7 @@ static inline void R(load_light_samples)(const glint_light_sample *const light_s
 
 /// Returns the lanes within the cone. Also computes the cosine of the angle to the axis, this cosine minus 1, and the
 /// smooth step.
-static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, float cosine[], float less_1[], float step[])
+static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, vr *cosine, vr *less_1, vr *step)
 {
     const vr axis[3] = { r_set(spot->axis[0]), r_set(spot->axis[1]), r_set(spot->axis[2]) };
     const vr one = r_set(1);
@@ -68,9 +68,9 @@ static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, float 
     rm lit = r_lt(r_set(0), x);
     if (spot->exponent != 0)
         lit = rm_and(lit, r_le(r_set(0x1p-126), c));
-    r_store_f(cosine, c);
-    r_store_f(less_1, c - one);
-    r_store_f(step, (x * x) * (r_set(3) - r_set(2) * x));
+    *cosine = c;
+    *less_1 = c - one;
+    *step = (x * x) * (r_set(3) - r_set(2) * x);
     return lit;
 }
 
@@ -85,12 +85,11 @@ static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf le
 
 /// Returns the lanes towards which a sample emits; *m: the cosine at the light's surface, times the distance in the
 /// light's units.
-static inline rm R(in_front)(const glint_light_sample *light_sample, const R(light_sample_lanes) * lanes, int i,
-                             const vr l[3], vr *m)
+static inline rm R(in_front)(uint32_t emission, const R(light_sample_lanes) * lanes, int i, const vr l[3], vr *m)
 {
     const vr n[3] = { r_load(lanes->normal[0] + i), r_load(lanes->normal[1] + i), r_load(lanes->normal[2] + i) };
     *m = -DOT(n, l);
-    if (light_sample->emission == GLINT_EMIT_RADIANT_BOTH)
+    if (emission == GLINT_EMIT_RADIANT_BOTH)
         *m = r_max(*m, -*m);
     return r_lt(r_set(0), *m);
 }

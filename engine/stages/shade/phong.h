@@ -7,12 +7,13 @@
 
 #include "engine/stages/simd/elementary.h"
 
-/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material; 0 in lanes that a light
-/// does not reach.
+/// The factors of a light, and the reflectances and colours with which they are multiplied.
+enum { SHARE_DIFFUSE, SHARE_SPECULAR, SHARE_GRAZING, SHARE_COUNT };
+
+/// The geometric factors of the lights that reach a group, for one material: w (n.l), w S, and for microfacets w S
+/// times Schlick's (1 - v.h)^5; 0 in lanes that a light does not reach.
 typedef struct light_factors {
-    _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
-    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< for microfacets: the specular factor times
-        ///< Schlick's (1 - v.h)^5
+    _Alignas(64) float factor[SHARE_COUNT][GLINT_LIGHT_CHUNK][GLINT_GROUP];
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
     uint8_t number[GLINT_LIGHT_CHUNK]; ///< number of each light in the call
     uint32_t count;
@@ -20,25 +21,30 @@ typedef struct light_factors {
 } light_factors;
 
 /// Computes w (n.l) and w S of one light or sample, for a group. `exponent`: the exponent of each lane of the group;
-/// NULL, a constant: the material's exponent. `add`: adds to the stored values of the light to which this light is
-/// joined. Returns whether w S may be above 0 in any lane.
+/// NULL: the material's exponent. `add`: adds to the stored values of the light to which this light is joined.
+/// Returns whether w S may be above 0 in any lane.
 INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, const float *exponent,
                        bool specular, size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {
+    const float *attenuation = light->attenuation ? light->attenuation + at : NULL, *cosine = light->cosine + at;
     const unsigned lit = light->lit[at / GLINT_GROUP];
+    const float own = material->shininess;
     bool any = false;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         vf w = f_set(1);
-        if (light->attenuation)
-            w = w * f_load(light->attenuation + at + i);
+        if (attenuation)
+            w = f_load(attenuation + i);
         const fm mask = fm_from_bits(lit >> i & ((1u << VF) - 1));
-        vf share = f_select(mask, w * f_load(light->cosine + at + i), f_set(0));
+        vf share = f_select(mask, w * f_load(cosine + i), f_set(0));
         if (add)
             share = f_load(diffuse + i) + share;
         f_store(diffuse + i, share);
         if (specular) {
             const vf log2 = f_load(light->log2_specular + at + i);
-            const vf y = (exponent ? f_load(exponent + i) : f_set(material->shininess)) * log2;
+            vf y = f_set(own);
+            if (exponent)
+                y = f_load(exponent + i);
+            y = y * log2;
             const fm there = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
             share = f_set(0);
             if (fm_bits(fm_andnot(there, f_lt(y, f_set(GLINT_EXP2_LOWEST))))) {

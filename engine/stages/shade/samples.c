@@ -1,6 +1,5 @@
 // The colours of samples, and the sums over samples.
 #include "engine/stages/film/resolve.h"
-#include "engine/stages/film/samples.h"
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/shade/sky.h"
 

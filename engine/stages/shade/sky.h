@@ -2,7 +2,6 @@
 #ifndef GLINT_SHADE_SKY_H
 #define GLINT_SHADE_SKY_H
 
-#include "engine/stages/program/exact.h"
 #include "engine/stages/shade/group.h"
 #include "engine/stages/simd/elementary.h"
 
