@@ -985,14 +985,14 @@ const glint_curve *glint_chart_curve(const glint_chart *chart, size_t i);
 
 #define GLINT_OVERLAY_TEXT_SIZE 384 ///< bytes of an overlay's text, with the ending NUL
 #define GLINT_OVERLAY_TICKS_MAX 16 ///< most numbers next to a colour bar
-#define GLINT_AXIS_NAME_SIZE 16 ///< bytes of an axis's name, with the ending NUL
+#define GLINT_AXIS_NAME_SIZE 64 ///< bytes of an axis's name, with the ending NUL
 
 /// The fields of an overlay. Each kind reads the fields whose comment names it, and those whose comment names no
 /// kind.
 typedef struct glint_overlay_desc {
     glint_overlay_kind kind; ///< kind of the overlay; glint_overlay_set cannot change it
-    /// All kinds except axes: UTF-8, lines separated by newlines; "": none. Without a position, a label's lines that
-    /// are wider than the picture are broken at blanks
+    /// All kinds except axes: UTF-8, lines separated by newlines; "": none. Parts between two $ are formulas. Without a
+    /// position, a label's lines that are wider than the picture are broken at blanks
     char text[GLINT_OVERLAY_TEXT_SIZE];
     /// Position as a fraction of the free space inside the margin: 0 is left or top, 1 right or bottom. Default:
     /// label {0, 0}, colour bar {1, 0.5}, axes {0, 1}, chart {0.5, 0.5}

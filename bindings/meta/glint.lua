@@ -425,7 +425,7 @@ function glint.difference(fields) end
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.label_fields: glint.overlay_fields
----@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing
+---@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing. Parts between two $ are formulas, a subset of TeX
 ---@field at_point? glint.vec3  a point in the world next to which the label is drawn, instead of `at`; `margin` is the distance from the point. Default nil
 
 --- A text over the picture. A label set in frame(t) changes the picture's key, but nothing is rendered again for it.
@@ -480,7 +480,7 @@ function glint.colorbar(fields) end
 function glint.chart(fields) end
 
 ---@class glint.axes_fields: glint.overlay_fields
----@field labels? string[]  names of x, y and z, at most 15 bytes each. Default {"x", "y", "z"}
+---@field labels? string[]  names of x, y and z, as the text of a label, at most 63 bytes each. Default {"x", "y", "z"}
 ---@field length? number  length of an axis parallel to the picture plane, points. Default nil: 2.5 times `size`
 ---@field box? glint.vec3[]|table  {lowest corner, highest corner} in the world, a box { low, size, xy, xz, yz } or a cell { origin, a, b, c }: the axes are then drawn with numbers along edges of the box; replaces `at`, `position`, `margin`, `length` and `background`. Default nil
 ---@field values? glint.vec3[]  the numbers at those two corners. Default nil: world coordinates; for a tilted cell, lengths along its sides

@@ -79,7 +79,11 @@ void glint_ink_fill(glint_ink *ink, int x, int y, int width, int height, const d
 void glint_ink_text(glint_ink *ink, const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_turn turn,
                     const double color[3])
 {
-    const int along = glint_typeface_width(typeface, text, size), across = typeface->height;
+    glint_line line;
+    glint_line_set(typeface, text, size, &line);
+    const int along = line.width + 2 * line.pad, across = line.above + line.below;
+    x -= turn ? 0 : line.pad;
+    y -= turn ? line.pad : 0;
     const glint_rect box = { x, y, turn ? across : along, turn ? along : across }, seen = common(&box, &ink->clip);
     if (seen.width <= 0 || seen.height <= 0)
         return;

@@ -19,7 +19,7 @@
 #ifndef GLINT_INK_H
 #define GLINT_INK_H
 
-#include "engine/text/typeface.h"
+#include "engine/text/line.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,8 +55,8 @@ typedef struct glint_ink_mark {
     double color[3]; ///< linear
     double opacity; ///< 0 .. 1
     glint_rect clip; ///< the mark is drawn only inside; inside the page
-    glint_rect box; ///< the rectangle of a fill; the box of a text, whose width is along the text unless it is turned
-    char *text; ///< of a text: UTF-8, one line. Owned
+    glint_rect box; ///< the rectangle of a fill; the box of a text with the line's pad at both ends, whose width is along the text unless it is turned
+    char *text; ///< of a text: UTF-8, one line; glint_line_set has its runs and rules. Owned
     glint_typeface typeface; ///< of a text
     glint_turn turn; ///< of a text
     glint_strokes strokes; ///< owned
@@ -85,8 +85,8 @@ glint_status glint_ink_check(const glint_ink *ink, glint_error *error);
 void glint_ink_clip(glint_ink *ink, const glint_rect *rect);
 /// Fills a rectangle. opacity  0 .. 1.
 void glint_ink_fill(glint_ink *ink, int x, int y, int width, int height, const double color[3], double opacity);
-/// Draws the first `size` bytes of UTF-8 text, at most to its end. x, y  the upper left corner of the text, which is
-/// typeface->height high; of a turned text the upper left corner of its turned box.
+/// Draws the first `size` bytes of UTF-8 text, at most to its end, as a line that may contain formulas. x, y  the upper
+/// left corner of the line, whose size glint_line_set computes; of a turned text the upper left corner of its turned box.
 void glint_ink_text(glint_ink *ink, const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_turn turn,
                     const double color[3]);
 /// Draws strokes as one antialiased shape. Copies the strokes.

@@ -65,7 +65,7 @@ static void add_fill(glint_stamps *stamps, const glint_ink_mark *mark)
 }
 
 /// Draws a text that runs down or up into a stamp: draws it level into a mask of its own, which is then turned.
-static void draw_turned(glint_stamps *stamps, const glint_ink_mark *mark, const glint_stamp *stamp)
+static void draw_turned(glint_stamps *stamps, const glint_ink_mark *mark, const glint_line *line, const glint_stamp *stamp)
 {
     const glint_rect *box = &mark->box;
     const bool down = mark->turn == GLINT_DOWN;
@@ -74,7 +74,7 @@ static void draw_turned(glint_stamps *stamps, const glint_ink_mark *mark, const 
     stamps->lost = stamps->lost || !level.coverage;
     if (!level.coverage)
         return;
-    glint_typeface_draw(&mark->typeface, mark->text, SIZE_MAX, -first, 0, &level);
+    glint_line_draw(&mark->typeface, line, line->pad - first, line->above, &level);
     for (int y = 0; y < stamp->height; y++)
         for (int x = 0; x < stamp->width; x++) {
             const int across = stamp->x + x - box->x, row = down ? box->width - 1 - across : across;
@@ -89,13 +89,15 @@ static void add_text(glint_stamps *stamps, const glint_ink_mark *mark)
 {
     const glint_rect *box = &mark->box;
     glint_stamp stamp;
+    glint_line line;
     if (!glint_stamps_mask(stamps, &mark->clip, box->x, box->y, box->width, box->height, &stamp))
         return;
+    glint_line_set(&mark->typeface, mark->text, SIZE_MAX, &line);
     glint_mask mask = { stamp.width, stamp.height, stamp.coverage };
     if (mark->turn)
-        draw_turned(stamps, mark, &stamp);
+        draw_turned(stamps, mark, &line, &stamp);
     else
-        glint_typeface_draw(&mark->typeface, mark->text, SIZE_MAX, box->x - stamp.x, box->y - stamp.y, &mask);
+        glint_line_draw(&mark->typeface, &line, box->x + line.pad - stamp.x, box->y + line.above - stamp.y, &mask);
     glint_stamps_add(stamps, stamp, mark->color);
 }
 

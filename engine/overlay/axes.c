@@ -35,14 +35,14 @@ static axis find_axis(const glint_layout *layout, int i)
 /// view turns.
 static int reach(const glint_layout *layout)
 {
-    int widest = 0;
+    int most = 0;
     for (int i = 0; i < 3; i++) {
-        const char *name = layout->desc->names[i];
-        const int width = glint_typeface_width(&layout->typeface, name, strlen(name));
-        widest = width > widest ? width : widest;
+        int height;
+        const int width = glint_layout_line_size(layout, layout->desc->names[i], SIZE_MAX, &height);
+        most = width > most ? width : most;
+        most = height > most ? height : most;
     }
-    return (int)ceil(layout->length + NAME_GAP * layout->em +
-                     (widest > layout->typeface.height ? widest : layout->typeface.height) / 2.0);
+    return (int)ceil(layout->length + NAME_GAP * layout->em + most / 2.0);
 }
 
 void glint_axes_measure(glint_layout *layout) { layout->width = layout->height = 2 * reach(layout) + 1; }
@@ -65,10 +65,10 @@ void glint_axes_draw(const glint_layout *layout, int x, int y)
     for (int i = 0; i < 3; i++) {
         const axis *a = &axes[order[i]];
         const char *name = layout->desc->names[order[i]];
-        const int wide = glint_typeface_width(&layout->typeface, name, strlen(name));
+        int height;
+        const int wide = glint_layout_line_size(layout, name, SIZE_MAX, &height);
         glint_layout_line(layout, middle, a->end, fmax(THICK * layout->em / 2, 0.75), colors[order[i]]);
         glint_layout_text(layout, name, (int)floor(middle[0] + a->name[0] - wide / 2.0 + 0.5),
-                          (int)floor(middle[1] + a->name[1] - layout->typeface.height / 2.0 + 0.5), wide, 0,
-                          layout->desc->color);
+                          (int)floor(middle[1] + a->name[1] - height / 2.0 + 0.5), wide, 0, layout->desc->color);
     }
 }

@@ -210,9 +210,9 @@ static bool find_side(const box_axes *axes, edge *e)
 }
 
 /// Returns the rectangle of a text that begins `away` pixels outside a point of the edge.
-static rect place_text(const box_axes *axes, const edge *e, const double at[2], double away, int width)
+static rect place_text(const edge *e, const double at[2], double away, int width, int height)
 {
-    const double size[2] = { width, axes->layout->typeface.height };
+    const double size[2] = { width, height };
     const double far = away + (fabs(e->out[0]) * size[0] + fabs(e->out[1]) * size[1]) / 2;
     rect r;
     for (int i = 0; i < 2; i++) {
@@ -247,6 +247,7 @@ static void draw_text(box_axes *axes, const char *text, rect r)
 static bool place_marks(const box_axes *axes, const edge *e, const glint_marks *marks, double at[][2])
 {
     const double gap = GAP * axes->layout->em;
+    const int height = axes->layout->typeface.height;
     bool clear = true;
     int before = -1;
     for (int i = 0; i < marks->count; i++) {
@@ -257,8 +258,8 @@ static bool place_marks(const box_axes *axes, const edge *e, const glint_marks *
             continue;
         }
         if (before >= 0) {
-            const rect a = place_text(axes, e, at[before], 0, marks->of[before].width);
-            const rect b = place_text(axes, e, at[i], 0, marks->of[i].width);
+            const rect a = place_text(e, at[before], 0, marks->of[before].width, height);
+            const rect b = place_text(e, at[i], 0, marks->of[i].width, height);
             clear = clear && !overlap(&a, &b, gap);
         }
         before = i;
@@ -289,13 +290,15 @@ static void draw_axis(box_axes *axes, int direction, const edge *e)
         if (isnan(at[i][0]))
             continue;
         glint_layout_line(layout, at[i], mark, half, desc->color);
-        draw_text(axes, marks.of[i].text, place_text(axes, e, at[i], tick + gap, marks.of[i].width));
+        draw_text(axes, marks.of[i].text, place_text(e, at[i], tick + gap, marks.of[i].width, layout->typeface.height));
         reach = fmax(reach,
                      tick + 2 * gap + fabs(e->out[0]) * marks.of[i].width + fabs(e->out[1]) * layout->typeface.height);
     }
     const char *name = desc->names[direction];
     const double middle[2] = { (e->at[0][0] + e->at[1][0]) / 2, (e->at[0][1] + e->at[1][1]) / 2 };
-    draw_text(axes, name, place_text(axes, e, middle, reach, glint_typeface_width(&layout->typeface, name, strlen(name))));
+    int height;
+    const int width = glint_layout_line_size(layout, name, SIZE_MAX, &height);
+    draw_text(axes, name, place_text(e, middle, reach, width, height));
 }
 
 void glint_box_axes_draw(const glint_layout *layout)

@@ -86,9 +86,9 @@ static glint_scale make_scale(const glint_layout *layout, int axis)
 static int widest_label(const glint_layout *layout)
 {
     const glint_curve *c;
-    int widest = 0, lines;
+    int widest = 0, advance;
     for (size_t i = 0; (c = glint_chart_curve(layout->desc->chart, i)) != NULL; i++) {
-        const int width = glint_layout_measure(layout, c->label, &lines);
+        const int width = glint_layout_measure(layout, c->label, &advance);
         widest = width > widest ? width : widest;
     }
     return widest;
@@ -101,17 +101,19 @@ static chart make_chart(const glint_layout *layout, int x, int y)
     const glint_overlay_desc *desc = layout->desc;
     const glint_typeface *typeface = &layout->typeface;
     chart c = { .layout = layout, .line = (int)fmax(layout->em / 16, 1), .gap = (int)ceil(GAP * layout->em) };
-    int lines;
-    glint_layout_measure(layout, desc->text, &lines);
-    const int label = widest_label(layout), title = lines * typeface->line + (lines ? 2 * c.gap : typeface->height / 2);
-    const int bottom = c.gap + typeface->height + (desc->titles[0][0] ? typeface->line + c.gap : 0);
+    int advance, names[2]; // distances from a text to what follows it
+    glint_layout_measure(layout, desc->text, &advance);
+    for (int i = 0; i < 2; i++)
+        glint_layout_measure(layout, desc->titles[i], &names[i]);
+    const int label = widest_label(layout), title = advance + (advance ? 2 * c.gap : typeface->height / 2);
+    const int bottom = c.gap + typeface->height + (names[0] ? names[0] + c.gap : 0);
     for (int i = 0; i < 2; i++)
         c.scales[i] = make_scale(layout, i);
     c.area.y = y + title;
     c.area.height = layout->height - title - bottom;
     c.scales[1].length = c.area.height > 1 ? c.area.height : 1;
     glint_marks_fit(&c.marks[1], typeface, &c.scales[1]);
-    const int left = (desc->titles[1][0] ? typeface->line + c.gap : 0) + c.marks[1].widest + c.gap;
+    const int left = (names[1] ? names[1] + c.gap : 0) + c.marks[1].widest + c.gap;
     c.area.x = x + left;
     c.area.width = layout->width - left - (label ? label + 2 * c.gap : (int)(2 * layout->em));
     c.scales[0].length = c.area.width > 1 ? c.area.width : 1;
@@ -199,8 +201,10 @@ static void draw_axes(const chart *c, int x, int y)
     }
     glint_layout_fill(layout, a->x, a->y, c->line, a->height, desc->color, 1);
     glint_layout_fill(layout, a->x, bottom, a->width, c->line, desc->color, 1);
-    glint_layout_text(layout, desc->titles[0], a->x, y + layout->height - typeface->height, a->width, 0.5, desc->color);
-    const int length = glint_typeface_width(typeface, desc->titles[1], SIZE_MAX);
+    int height, across;
+    glint_layout_line_size(layout, desc->titles[0], SIZE_MAX, &height);
+    glint_layout_text(layout, desc->titles[0], a->x, y + layout->height - height, a->width, 0.5, desc->color);
+    const int length = glint_layout_line_size(layout, desc->titles[1], SIZE_MAX, &across);
     glint_ink_text(layout->ink, typeface, desc->titles[1], SIZE_MAX, x, a->y + (a->height - length) / 2, GLINT_UP, desc->color);
     glint_layout_text(layout, desc->text, a->x, y, a->width, 0.5, desc->color);
 }
@@ -248,8 +252,10 @@ void glint_chart_draw(const glint_layout *layout, int x, int y)
     glint_ink_clip(layout->ink, NULL);
     for (size_t i = 0; (curve = glint_chart_curve(layout->desc->chart, i)) != NULL; i++) {
         double color[3];
+        int height;
         curve_color(curve, i, color);
+        glint_layout_line_size(layout, curve->label, strcspn(curve->label, "\n"), &height);
         glint_layout_text(layout, curve->label, c.area.x + c.area.width + c.gap,
-                          c.area.y + (int)c.ends[i] - layout->typeface.height / 2, 0, 0, color);
+                          c.area.y + (int)c.ends[i] - height / 2, 0, 0, color);
     }
 }

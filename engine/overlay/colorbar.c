@@ -30,14 +30,14 @@ static void find_marks(const glint_layout *layout, bar *b)
 static bar make_bar(const glint_layout *layout)
 {
     bar b = { .line = (int)(layout->em / 16) > 1 ? (int)(layout->em / 16) : 1 };
-    int lines;
+    int advance;
     find_marks(layout, &b);
     b.thick = (int)ceil(BAR * layout->em);
     b.tick = (int)ceil(TICK * layout->em);
     b.gap = (int)ceil(GAP * layout->em);
     b.length = (int)layout->length > 2 ? (int)layout->length : 2;
-    b.title_width = glint_layout_measure(layout, layout->desc->text, &lines);
-    b.title_height = lines * layout->typeface.line + (lines ? b.gap : 0);
+    b.title_width = glint_layout_measure(layout, layout->desc->text, &advance);
+    b.title_height = advance + (advance ? b.gap : 0);
     return b;
 }
 

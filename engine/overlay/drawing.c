@@ -6,12 +6,23 @@
 
 double glint_layout_pixels(double points, double dpi) { return fmin(points * (dpi > 0 ? dpi / 72 : 1), GLINT_SIDE_MAX); }
 
-int glint_layout_measure(const glint_layout *layout, const char *text, int *lines)
+int glint_layout_line_size(const glint_layout *layout, const char *text, size_t size, int *height)
 {
-    int widest = 0;
-    for (*lines = 0; *text; ++*lines) {
+    glint_line line;
+    glint_line_set(&layout->typeface, text, size, &line);
+    *height = line.above + line.below;
+    return line.width;
+}
+
+/// Returns the distance from the top of a line to the top of the next line.
+static int pitch(const glint_layout *layout, int height) { return layout->typeface.line + height - layout->typeface.height; }
+
+int glint_layout_measure(const glint_layout *layout, const char *text, int *advance)
+{
+    int widest = 0, height;
+    for (*advance = 0; *text; *advance += pitch(layout, height)) {
         const size_t size = strcspn(text, "\n");
-        const int width = glint_typeface_width(&layout->typeface, text, size);
+        const int width = glint_layout_line_size(layout, text, size, &height);
         widest = width > widest ? width : widest;
         text += size + (text[size] == '\n');
     }
@@ -21,9 +32,9 @@ int glint_layout_measure(const glint_layout *layout, const char *text, int *line
 void glint_layout_text(const glint_layout *layout, const char *text, int x, int y, int width, double align,
                        const double color[3])
 {
-    for (; *text; y += layout->typeface.line) {
+    for (int height; *text; y += pitch(layout, height)) {
         const size_t size = strcspn(text, "\n");
-        const int wide = glint_typeface_width(&layout->typeface, text, size);
+        const int wide = glint_layout_line_size(layout, text, size, &height);
         glint_ink_text(layout->ink, &layout->typeface, text, size, x + (int)floor((width - wide) * align), y, GLINT_LEVEL, color);
         text += size + (text[size] == '\n');
     }

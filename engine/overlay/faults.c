@@ -34,19 +34,34 @@ static void describe(check *c)
              name, *end ? "..." : "");
 }
 
-/// Warns about the first character of a text that the font lacks.
-static void check_letters(const check *c, const char *text)
+/// Warns about the first character of a run that the font lacks. Returns whether there is one.
+static bool check_run(const check *c, const glint_run *run)
 {
+    const char *end = run->text + strnlen(run->text, run->size);
     char message[200];
-    for (const char *at = text, *letter = at; *at; letter = at) {
+    for (const char *at = run->text, *letter = at; at < end; letter = at) {
         const uint32_t code = glint_font_code(&at);
-        if (code == '\n' || glint_typeface_has(&c->layout->typeface, code))
+        if (glint_typeface_has(&c->layout->typeface, code))
             continue;
         snprintf(message, sizeof message,
                  "the font has no letter '%.*s' (U+%04X), so a box is drawn; set GLINT_FONT to the file of another font",
                  (int)(at - letter), letter, (unsigned)code);
         warn(c, message);
-        return;
+        return true;
+    }
+    return false;
+}
+
+/// Warns about the first character of a text that the font lacks.
+static void check_letters(const check *c, const char *text)
+{
+    glint_line line;
+    for (size_t size; *text; text += size + (text[size] == '\n')) {
+        size = strcspn(text, "\n");
+        glint_line_set(&c->layout->typeface, text, size, &line);
+        for (int i = 0; i < line.run_count; i++)
+            if (check_run(c, &line.runs[i]))
+                return;
     }
 }
 
@@ -57,7 +72,8 @@ static const char *find_widest(const glint_layout *layout, int *length)
     int widest = -1;
     for (const char *line = layout->text; *line;) {
         const size_t size = strcspn(line, "\n");
-        const int width = glint_typeface_width(&layout->typeface, line, size);
+        int height;
+        const int width = glint_layout_line_size(layout, line, size, &height);
         if (width > widest) {
             widest = width;
             found = line;

@@ -10,20 +10,20 @@
 #define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
-/// Wraps the lines of a label at spaces if they are wider than the picture less its margins. A word wider than that
+/// Wraps the lines of a label at spaces outside formulas if they are wider than the picture less its margins. A word wider than that
 /// stays whole.
 static void wrap(glint_layout *layout, double margin)
 {
     const int most = layout->overlays->width - 2 * layout->padding, space = most - 2 * (int)ceil(margin);
-    const glint_typeface *typeface = &layout->typeface;
     for (char *line = layout->text; *line;) {
         const size_t size = strcspn(line, "\n");
         char *end = line + size, *fits = NULL;
-        bool is_wide = glint_typeface_width(typeface, line, size) > most;
-        for (char *blank = line; is_wide && (blank = memchr(blank, ' ', (size_t)(end - blank))) != NULL; blank++) {
-            if (fits && glint_typeface_width(typeface, line, (size_t)(blank - line)) > space)
+        int height;
+        const bool is_wide = glint_layout_line_size(layout, line, size, &height) > most;
+        for (const char *blank = line; is_wide && (blank = glint_line_blank(line, blank, end)) != NULL; blank++) {
+            if (fits && glint_layout_line_size(layout, line, (size_t)(blank - line), &height) > space)
                 break;
-            fits = blank;
+            fits = line + (blank - line);
         }
         if (fits && (fits > line))
             *fits = '\n';
@@ -33,9 +33,9 @@ static void wrap(glint_layout *layout, double margin)
 
 static void measure_label(glint_layout *layout)
 {
-    int lines;
-    layout->width = glint_layout_measure(layout, layout->text, &lines);
-    layout->height = (lines - 1) * layout->typeface.line + layout->typeface.height;
+    int advance;
+    layout->width = glint_layout_measure(layout, layout->text, &advance);
+    layout->height = advance - layout->typeface.line + layout->typeface.height;
 }
 
 static void draw_label(const glint_layout *layout, int x, int y)

@@ -5,7 +5,6 @@
 #include "engine/ink/ink.h"
 #include "engine/overlay/overlay.h"
 #include "engine/overlay/pointer.h"
-#include "engine/text/typeface.h"
 
 typedef struct glint_layout {
     const glint_overlays *overlays;
@@ -38,8 +37,11 @@ double glint_layout_pixels(double points, double dpi);
 /// for axes at a box.
 void glint_layout_place(glint_layout *layout, double dpi);
 
-/// Returns the width of the widest line, and the number of lines.
-int glint_layout_measure(const glint_layout *layout, const char *text, int *lines);
+/// Returns the width of a line of `size` bytes, and its height.
+int glint_layout_line_size(const glint_layout *layout, const char *text, size_t size, int *height);
+/// Returns the width of the widest line, and the distance from the top of the first line to the top of a line below the
+/// last one; pixels.
+int glint_layout_measure(const glint_layout *layout, const char *text, int *advance);
 /// Draws the lines of a text; the top left of the first is x, y. `align` is 0 to align each line on the left of
 /// `width`, 0.5 to centre it, and 1 to align it on the right.
 void glint_layout_text(const glint_layout *layout, const char *text, int x, int y, int width, double align,

@@ -3,6 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/text/font.h"
+#include "engine/text/line.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -52,7 +53,7 @@ static glint_status check_text(const char *name, const char *text, size_t size, 
     return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %zu bytes expected", name, size - 1);
 }
 
-/// Checks a text to draw, letter by letter from left to right.
+/// Checks a text to draw, letter by letter from left to right, and its formulas.
 static glint_status check_drawn(const char *name, const char *text, size_t size, glint_error *error)
 {
     glint_status status = check_text(name, text, size, error);
@@ -63,7 +64,7 @@ static glint_status check_drawn(const char *name, const char *text, size_t size,
                               "%s: letters that run from left to right expected, got '%.*s' (U+%04X), which runs from right to left",
                               name, (int)(at - letter), letter, (unsigned)code);
     }
-    return status;
+    return status ? status : glint_line_check(name, text, error);
 }
 
 static glint_status check_position(const glint_overlay_desc *desc, glint_error *error)
@@ -261,10 +262,11 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 {
     if ((unsigned)desc->kind > GLINT_OVERLAY_CHART)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such overlay");
-    const bool has_text = desc->kind < GLINT_OVERLAY_ARROW || desc->kind == GLINT_OVERLAY_CHART;
-    glint_status status = check_drawn(has_text ? "text" : "label", desc->text, sizeof desc->text, error);
+    static const char *const texts[] = { "text", "title", "text", "label", "label", "label", "title" };
+    static const char *const names[] = { "labels[1]", "labels[2]", "labels[3]" };
+    glint_status status = check_drawn(texts[desc->kind], desc->text, sizeof desc->text, error);
     for (int i = 0; i < 3 && !status; i++)
-        status = check_drawn("names", desc->names[i], sizeof desc->names[i], error);
+        status = check_drawn(names[i], desc->names[i], sizeof desc->names[i], error);
     if (!status)
         status = check_text("name", desc->name, sizeof desc->name, error);
     if (!status)

@@ -158,7 +158,7 @@ void glint_line_draw(const glint_typeface *typeface, const glint_line *line, int
         glint_run run = line->runs[i];
         run.x += x;
         run.y += y;
-        glint_typeface_draw_run(typeface, &run, mask);
+        glint_typeface_draw(typeface, &run, mask);
     }
     for (int i = 0; i < line->rule_count; i++)
         draw_rule(&line->rules[i], x, y, mask);

@@ -131,16 +131,10 @@ static void draw_bitmap(const glint_run *run, glint_mask *mask)
     }
 }
 
-void glint_typeface_draw_run(const glint_typeface *typeface, const glint_run *run, glint_mask *mask)
+void glint_typeface_draw(const glint_typeface *typeface, const glint_run *run, glint_mask *mask)
 {
     if (typeface->letters)
         glint_letters_draw(typeface->letters, run, mask);
     else
         draw_bitmap(run, mask);
-}
-
-void glint_typeface_draw(const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_mask *mask)
-{
-    const glint_run run = { .text = text, .size = size, .x = x, .y = y + typeface->above, .em = typeface->em, .stretch = 1 };
-    glint_typeface_draw_run(typeface, &run, mask);
 }

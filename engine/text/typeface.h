@@ -29,8 +29,6 @@ double glint_typeface_advance(const glint_typeface *typeface, const glint_run *r
 glint_run_box glint_typeface_box(const glint_typeface *typeface, const glint_run *run);
 /// Draws a run into the mask, clipped to the mask. The bitmap font rounds the size to a multiple of 13 and the position
 /// to pixels, and has no slant.
-void glint_typeface_draw_run(const glint_typeface *typeface, const glint_run *run, glint_mask *mask);
-/// Draws the text into the mask, with its upper left corner at x, y; clipped to the mask.
-void glint_typeface_draw(const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_mask *mask);
+void glint_typeface_draw(const glint_typeface *typeface, const glint_run *run, glint_mask *mask);
 
 #endif

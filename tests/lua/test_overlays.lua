@@ -95,7 +95,7 @@ function tests.errors()
   raises("colorbar.ticks: list of numbers expected, got 4", bar, { ticks = 4 })
   raises("colorbar.orientation: \"vertical\" or \"horizontal\" expected", bar, { orientation = "up" })
   raises("axes.labels: list of three strings expected", glint.axes, { labels = { "a", "b" } })
-  raises("axes.labels: at most 15 bytes expected, got 16", glint.axes, { labels = { ("a"):rep(16), "b", "c" } })
+  raises("axes.labels: at most 63 bytes expected, got 64", glint.axes, { labels = { ("a"):rep(64), "b", "c" } })
   local unit = { { 0, 0, 0 }, { 1, 1, 1 } }
   raises("axes.box: two corners {{x, y, z}, {x, y, z}} expected, got 3", glint.axes, { box = 3 })
   raises("axes.box: two corners {{x, y, z}, {x, y, z}} expected", glint.axes, { box = { { 0, 0, 0 } } })
@@ -250,12 +250,51 @@ function tests.wide_lines_are_broken()
   check(placed ~= lines, "a label with a position is as it is")
 end
 
+-- Parts between two dollar signs are formulas in every text. A formula with a mistake is refused and changes nothing.
+function tests.formulas()
+  local label = glint.label { text = [[$\hat n\cdot\hat l$]] }
+  raises([[label.text: expected a command that formulas have, got \foo at character 3]], function() label.text = [[a$\foo$]] end)
+  check(label.text == [[$\hat n\cdot\hat l$]], "the text is unchanged")
+  raises([[label.text: expected a } for the {, got none at character 2]], glint.label, { text = "${x$" })
+  raises([[label.text: expected a formula between dollar signs (\$ is a dollar sign), got none at character 3]], glint.label, { text = "a $$" })
+  raises([[label.text: expected at most 10 nested parts, got more at character 22]], glint.label,
+    { text = "$" .. ("^{"):rep(20) .. "x" .. ("}"):rep(20) .. "$" })
+  raises([[colorbar.title: expected a sign or {...} after \frac at character 2]], bar, { title = [[$\frac{a}$]] })
+  raises([[axes.labels[2]: expected a { for each }, got a } at character 3]], glint.axes, { labels = { "x", "$y}$", "z" } })
+  raises([[arrow.label: expected at most one ^ at a sign, got another at character 5]], glint.arrow,
+    { from = { 0, 0, 0 }, to = { 1, 1, 1 }, label = "$x^2^3$" })
+  local function same(a, b)
+    local _, first = file_with(glint.label { text = a, size = 13 })
+    local _, second = file_with(glint.label { text = b, size = 13 })
+    return first == second
+  end
+  check(same([[\$5]], "$5"), "a lone dollar sign is a dollar sign")
+  check(same([[\$5 and \$10]], "$5 and $10"), "two prices are no formula")
+  check(same("$x$", "x"), "one letter in the bitmap font")
+  check(same([[$\alpha\le β$]], [[$α≤\beta$]]), "characters beyond ASCII")
+  check(not same("$x^2$", "x^2") and not same("$x^2$", "$x_2$"), "scripts")
+  check(not same([[$\frac{a}{b}$]], "$a/b$"), "a fraction")
+end
+
+-- A formula is not broken between lines, and its height counts.
+function tests.sizes_of_formulas()
+  for _, text in ipairs { [[alpha $\sqrt{a + b}$ beta]], [[$\frac{a + b}{c}$]], "one\n$x_{y_z}$\ntwo" } do
+    local camera, picture = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, nil
+    local scene = glint.scene { camera = camera, background = 0, glint.label { text = text, size = 13, at = "bottom" } }
+    picture = scene:render { width = 60, height = 100, output = "none" }
+    check(#bytes_of(picture) > 0, "%s", text)
+  end
+  local _, whole = file_with(glint.label { text = "alpha $a + b$", size = 13 }, 60)
+  local _, lines = file_with(glint.label { text = "alpha\n$a + b$", size = 13 }, 60)
+  check(whole == lines, "broken before the formula")
+end
+
 function tests.letters_that_run_left()
   for letter, code in pairs { ["ש"] = "U+05E9", ["م"] = "U+0645", ["ܐ"] = "U+0710", ["ﷺ"] = "U+FDFA" } do
     local want = ("letters that run from left to right expected, got '%s' (%s), which runs from right to left"):format(letter, code)
     raises("label.text: " .. want, glint.label, { text = "t = 1 " .. letter })
-    raises("axes.names: " .. want, glint.axes, { labels = { letter, "y", "z" } })
-    raises("colorbar.text: " .. want, glint.colorbar, { map = "magma", low = 0, high = 1, title = letter })
+    raises("axes.labels[1]: " .. want, glint.axes, { labels = { letter, "y", "z" } })
+    raises("colorbar.title: " .. want, glint.colorbar, { map = "magma", low = 0, high = 1, title = letter })
   end
   check(glint.label { text = "αβ Ж 中 →" }.text == "αβ Ж 中 →", "others are drawn")
 end
