@@ -38,6 +38,8 @@ typedef struct layout {
     int width, height; ///< of each picture
     glint_ink ink; ///< everything except the pixels of pictures. Owned
     glint_typeface typeface, title; ///< typeface of labels; typeface of the title, which is twice as large
+    int above, below; ///< extents of a line of labels or heads from its baseline, as large as the largest formula needs
+    int title_width, title_height; ///< 0 without a title
     double unit; ///< pixels in a 13th of the label size
     int rows, blocks;
     int column, label; ///< width of a column; height of the label below a picture
@@ -72,11 +74,25 @@ static void to_linear(uint32_t color, double out[3])
 
 static int pixels(const layout *l, double units) { return (int)(units * l->unit + 0.5); }
 
-static int line_height(const layout *l) { return l->typeface.line; }
+static int line_height(const layout *l) { return l->typeface.line + l->above + l->below - l->typeface.height; }
 
 static int text_width(const layout *l, const char *text, size_t size)
 {
-    return glint_typeface_width(&l->typeface, text, size);
+    glint_line line;
+    glint_line_set(&l->typeface, text, size, &line);
+    return line.width;
+}
+
+/// Extends the height of lines until the parts of a label fit.
+static void fit_label(layout *l, const char *label)
+{
+    glint_line line;
+    for (size_t size; label && *label; label += size + (label[size] == '\n')) {
+        size = strcspn(label, "\n");
+        glint_line_set(&l->typeface, label, size, &line);
+        l->above = line.above > l->above ? line.above : l->above;
+        l->below = line.below > l->below ? line.below : l->below;
+    }
 }
 
 /// Returns the width of the longest part of a label.
@@ -107,7 +123,11 @@ static void write_text(layout *l, const glint_typeface *typeface, int x, int y, 
                        uint32_t color)
 {
     double linear[3];
+    glint_line line;
     to_linear(color, linear);
+    glint_line_set(typeface, text, size, &line);
+    if (typeface == &l->typeface && turn == GLINT_LEVEL) // one baseline for all parts of a line
+        y += l->above - line.above;
     glint_ink_text(&l->ink, typeface, text, size, x, y, turn, linear);
 }
 
@@ -192,7 +212,7 @@ static void measure_sheet(layout *l)
     if (desc->colorbar)
         measure_bar(l);
     if (desc->title)
-        least[0] = l->left + (int64_t)glint_typeface_width(&l->title, desc->title, SIZE_MAX) + l->gap;
+        least[0] = l->left + (int64_t)l->title_width + l->gap;
     if (desc->difference) {
         snprintf(l->note, sizeof l->note,
                  "below each: |picture - cell %zu| x %g\nmax: the largest difference, of 255\n%%: pixels that differ",
@@ -205,6 +225,30 @@ static void measure_sheet(layout *l)
     if (l->sheet_width <= GLINT_SIDE_MAX)
         l->note_lines = set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, false, 0, 0);
     l->sheet_height += (int64_t)l->note_lines * line_height(l) + (l->note_lines ? l->gap / 2 : 0);
+}
+
+/// Measures the title and the height of lines.
+static void measure_lines(layout *l)
+{
+    const glint_sheet_desc *desc = l->desc;
+    glint_line line;
+    l->above = l->typeface.above;
+    l->below = l->typeface.height - l->typeface.above;
+    fit_label(l, desc->across);
+    fit_label(l, desc->down);
+    for (size_t i = 0; i < desc->cell_count; i++)
+        fit_label(l, desc->cells[i].label);
+    for (int i = 0; i < desc->columns && desc->column_heads; i++)
+        fit_label(l, desc->column_heads[i]);
+    for (int i = 0; i < l->rows && desc->row_heads; i++)
+        fit_label(l, desc->row_heads[i]);
+    for (int i = 0; i < l->blocks && desc->block_heads; i++)
+        fit_label(l, desc->block_heads[i]);
+    if (!desc->title)
+        return;
+    glint_line_set(&l->title, desc->title, SIZE_MAX, &line);
+    l->title_width = line.width;
+    l->title_height = l->title.line + line.above + line.below - l->title.height;
 }
 
 /// Measures the columns, then the labels and heads, which are broken into lines as wide as a column.
@@ -249,9 +293,10 @@ static void measure(layout *l)
     l->gap = pixels(l, 12);
     l->rows = (int)((desc->cell_count + (size_t)desc->columns - 1) / (size_t)desc->columns);
     l->blocks = desc->block_heads ? (l->rows + desc->block_rows - 1) / desc->block_rows : 0;
+    measure_lines(l);
     measure_labels(l);
     l->left = l->gap + (desc->down ? line_height(l) + l->gap / 2 : 0) + l->row_head;
-    l->top = l->gap + (desc->title ? l->title.line + l->gap : 0) + (desc->across ? line_height(l) + l->gap / 2 : 0) +
+    l->top = l->gap + (desc->title ? l->title_height + l->gap : 0) + (desc->across ? line_height(l) + l->gap / 2 : 0) +
             l->column_head;
     l->band = l->height + l->label + l->gap + (desc->difference ? l->height + l->difference + l->gap : 0);
     measure_sheet(l);
@@ -482,9 +527,41 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
 static glint_status check_axis(const char *name, const char *text, glint_error *error)
 {
     if (!text || strlen(text) <= AXIS_BYTES)
-        return GLINT_OK;
+        return text ? glint_line_check(name, text, error) : GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID, "%s: a name of at most %d bytes expected, got '%.40s...'", name, AXIS_BYTES,
                       text);
+}
+
+/// Checks the formulas of a text. NULL: no text.
+static glint_status check_text(const char *kind, size_t number, const char *text, glint_error *error)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s %zu", kind, number);
+    return text ? glint_line_check(name, text, error) : GLINT_OK;
+}
+
+/// Checks the formulas of `count` heads. NULL: no heads.
+static glint_status check_heads(const char *kind, const char *const *heads, size_t count, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < count && heads && !status; i++)
+        status = check_text(kind, i + 1, heads[i], error);
+    return status;
+}
+
+/// Checks the formulas of all texts of a sheet. `across` and `down` are checked already.
+static glint_status check_texts(const glint_sheet_desc *desc, glint_error *error)
+{
+    const size_t columns = (size_t)desc->columns, rows = (desc->cell_count + columns - 1) / columns;
+    const size_t block_rows = desc->block_heads ? (size_t)desc->block_rows : 1;
+    glint_status status = desc->title ? glint_line_check("title", desc->title, error) : GLINT_OK;
+    for (size_t i = 0; i < desc->cell_count && !status; i++)
+        status = check_text("label of cell", i + 1, desc->cells[i].label, error);
+    if (!status)
+        status = check_heads("head of column", desc->column_heads, columns, error);
+    if (!status)
+        status = check_heads("head of row", desc->row_heads, rows, error);
+    return status ? status : check_heads("head of block", desc->block_heads, (rows + block_rows - 1) / block_rows, error);
 }
 
 static glint_status check_desc(const glint_sheet_desc *desc, const char *path, glint_error *error)
@@ -511,6 +588,8 @@ static glint_status check_desc(const glint_sheet_desc *desc, const char *path, g
         status = check_axis("down", desc->down, error);
     if (!status && desc->block_heads)
         status = glint_check_whole("block_rows", desc->block_rows, 1, GLINT_SIDE_MAX, error);
+    if (!status)
+        status = check_texts(desc, error);
     return status || !desc->colorbar ? status : check_bar(desc->colorbar, error);
 }
 

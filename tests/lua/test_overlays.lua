@@ -279,9 +279,9 @@ end
 -- A formula is not broken between lines, and its height counts.
 function tests.sizes_of_formulas()
   for _, text in ipairs { [[alpha $\sqrt{a + b}$ beta]], [[$\frac{a + b}{c}$]], "one\n$x_{y_z}$\ntwo" } do
-    local camera, picture = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, nil
+    local camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }
     local scene = glint.scene { camera = camera, background = 0, glint.label { text = text, size = 13, at = "bottom" } }
-    picture = scene:render { width = 60, height = 100, output = "none" }
+    local picture = scene:render { width = 60, height = 100, output = "none" }
     check(#bytes_of(picture) > 0, "%s", text)
   end
   local _, whole = file_with(glint.label { text = "alpha $a + b$", size = 13 }, 60)
