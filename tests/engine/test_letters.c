@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/text/typeface.h"
+#include "engine/text/line.h"
 
 static glint_letters *open_font(void)
 {
@@ -98,6 +98,30 @@ static void test_cut(void **state)
     glint_letters_close(letters);
 }
 
+/// The pixels of a line with a formula. They are compared where the font and the library are Debian 12's (DejaVu Sans
+/// 2.37, FreeType 2.12.1), which the key identifies. Elsewhere the test compares sizes, which depend on neither hinting
+/// nor antialiasing.
+static void test_pinned(void **state)
+{
+    (void)state;
+    glint_letters *letters = open_font();
+    static glint_line line;
+    const glint_typeface face = glint_typeface_open(letters, 20);
+    char key[33], pixels[33];
+    glint_line_set(&face, "Snell $\\frac{\\sin\\theta_1}{\\sin\\theta_2}=\\frac{n_2}{n_1}$", SIZE_MAX, &line);
+    glint_mask mask = { 160, 80, calloc(160, 80) };
+    assert_non_null(mask.coverage);
+    glint_line_draw(&face, &line, 4, 40, &mask);
+    glint_key_hex(glint_letters_key(letters), key);
+    glint_key_hex(glint_key_add((glint_key) { 0 }, mask.coverage, 160 * 80), pixels);
+    if (strcmp(key, "ddc13588899c41c421ee8f600fa788df") == 0)
+        assert_string_equal(pixels, "274bcc97086d5dfe655959f79fd75e0c");
+    assert_true(line.width > 140 && line.width < 200 && line.rule_count == 2);
+    assert_true(ink_of(&mask) > 300 * 255);
+    free(mask.coverage);
+    glint_letters_close(letters);
+}
+
 static void test_choice(void **state)
 {
     (void)state;
@@ -126,7 +150,8 @@ static void test_choice(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_widths), cmocka_unit_test(test_shapes), cmocka_unit_test(test_cut), cmocka_unit_test(test_choice)
+        cmocka_unit_test(test_widths), cmocka_unit_test(test_shapes), cmocka_unit_test(test_cut), cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_pinned)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
