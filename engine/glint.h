@@ -664,6 +664,11 @@ const glint_camera_desc *glint_camera_get(const glint_camera *camera);
 /// Computes the view window of a picture of width x height pixels at distance 1: window[0] .. window[1] to the right
 /// and window[2] .. window[3] up, world units. For an orthographic camera the window is the same at every distance.
 void glint_camera_window(const glint_camera_desc *desc, double width, double height, double window[4]);
+/// Computes the world point at a position in a picture of width x height pixels, at a distance from the eye along the
+/// view. It is the inverse of glint_camera_project.
+///   pixel   to the right and down from the picture's upper left corner.
+void glint_camera_point(const glint_camera_desc *desc, double width, double height, const double pixel[2], double distance,
+                        double point[3]);
 /// Projects a world point into a picture of width x height pixels; occluders are ignored.
 ///   pixel   to the right and down from the picture's upper left corner; the centre of the first pixel is 0.5, 0.5
 ///   depth   as in the pass `depth`: the distance from the eye; for an orthographic camera, the distance along the view
@@ -928,13 +933,23 @@ typedef enum glint_overlay_kind {
     GLINT_OVERLAY_ARROW, ///< a line between two points of the world, with a head at `to`; `text` is its label
     GLINT_OVERLAY_LINE, ///< the same as an arrow, but without a head; its label is next to its middle
     GLINT_OVERLAY_ARC, ///< the angle between the directions `from` and `to` at `point`; `text` is its label
+    GLINT_OVERLAY_POLYLINE, ///< straight segments between `points`; `text` is its label, next to its middle
+    // Polylines whose points the caller computes before a plan is made, from the fields that their comments name:
+    GLINT_OVERLAY_LOBE, ///< the polar diagram of a highlight at `point`; see glint_material_evaluate
+    GLINT_OVERLAY_PATH, ///< the path of a ray; see glint_scene_path
+    GLINT_OVERLAY_FRUSTUM, ///< the view of a camera; see glint_camera_point
     GLINT_OVERLAY_CHART ///< curves over a grid, with numbers and names along two axes; `text` is its title
 } glint_overlay_kind;
 
-/// What is drawn of the part of an arrow, a line or an arc that lies behind surfaces. Surfaces count at any opacity.
+#define GLINT_OVERLAY_POINTS_MAX 128 ///< most points of a polyline
+#define GLINT_POINT_BEGINS 1u ///< bits of point_flags: no segment leads to this point
+#define GLINT_POINT_MARKED 2u ///< a dot is drawn at the point
+
+/// What is drawn of the part of an arrow, a line or an arc, or of a label at a point, that lies behind surfaces.
+/// Surfaces count at any opacity.
 typedef enum glint_hidden {
     GLINT_HIDDEN_DRAWN, ///< the same as in front of surfaces
-    GLINT_HIDDEN_DASHED, ///< dashes
+    GLINT_HIDDEN_DASHED, ///< dashes; not for labels
     GLINT_HIDDEN_NONE ///< nothing; an arrow has no head and no label if its tip is hidden, and a line or an arc no
         ///< label if its middle is hidden
 } glint_hidden;
@@ -1040,14 +1055,30 @@ typedef struct glint_overlay_desc {
     double from[3], to[3];
     bool has_point; ///< label. true: next to `point`, instead of `at` and `position`
     /// Label, arc: a point in the world. The text of a label, an arrow, a line or an arc tries eight positions around
-    /// its place, and takes the first inside the picture that covers no earlier text, bar or axes and if possible no
-    /// arrow, line or arc; if there is none, the first position
+    /// its place, and takes the first inside the picture that covers no other text, bar or axes and if possible no
+    /// arrow, line or arc. If none is free it tries eight more, farther away, up to 11 times; if still none is free,
+    /// it takes the first position of all
     double point[3];
+    /// Polyline, lobe, path, frustum: points of the world, finite; flags of each point; their number: 2 .. 128 for a
+    /// polyline, 0 .. 128 for the others
+    double points[GLINT_OVERLAY_POINTS_MAX][3];
+    uint8_t point_flags[GLINT_OVERLAY_POINTS_MAX];
+    size_t point_count;
+    /// Lobe: `from` is the normal (has_normal false: the surface's at `point`), `to` the direction to the light. Path:
+    /// origin and direction of the ray. Both directions need not be unit
+    bool has_normal;
+    double depth; ///< path: most surfaces at which the ray goes on, a whole number 0 .. 63; default 4
+    double aspect; ///< frustum: width of the picture divided by its height, > 0; default 16 / 9
     bool has_radius; ///< arc. false: the radius is a twelfth of the picture's height at the distance of `point`
-    double radius; ///< arc: its radius, world units, > 0
-    bool has_width; ///< arrow, line, arc. false: the width is an eighth of `size`
-    double width; ///< thickness, points, 0 .. 10000; at least one pixel is drawn
-    glint_hidden hidden; ///< arrow, line, arc: how the hidden part is drawn; default draw
+    /// Arc: its radius. Lobe: length of a highlight of 1; without has_radius 1. Path: length of a segment that hits
+    /// nothing; without has_radius the length of the first segment. Frustum: distance of the picture from the eye;
+    /// without has_radius the distance of the point that the camera looks at, or 1. World units, > 0
+    double radius;
+    bool has_width; ///< overlays with lines. false: the width is an eighth of `size`
+    double width; ///< thickness of a line, points, 0 .. 10000; at least one pixel is drawn
+    /// Overlays with lines: how the hidden part is drawn; label at `point`: what is drawn if the point is hidden, not
+    /// dashes; default drawn
+    glint_hidden hidden;
     glint_chart *chart; ///< chart: its curves; retained, not NULL
     char titles[2][GLINT_CHART_TEXT_SIZE]; ///< chart: names of x and y; "": none
     bool is_log_axis[2]; ///< chart: logarithmic x, y; all their numbers are above 0
@@ -1164,6 +1195,22 @@ typedef struct glint_hit {
 /// is written only then.
 glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
                               glint_hit *out, glint_error *error);
+
+#define GLINT_SEGMENTS_MAX 64 ///< most segments of a path
+
+/// A straight part of the path of a ray.
+typedef struct glint_segment {
+    double from[3], direction[3]; ///< begin; unit direction
+    bool hit; ///< whether the segment ends at a surface
+    double to[3]; ///< its end; only if `hit`
+} glint_segment;
+
+/// Follows one ray through mirrored and refracted directions, by the kernels that a frame uses. `direction` is not zero
+/// and need not be unit. A ray goes on from at most `depth` surfaces, and only while it carries at least a hundredth of
+/// the light of the first one. Bumps and opacity are ignored, and a mirror or transmission by a program counts as 1.
+/// *count: number of segments, at least 1. A segment precedes the segments that begin at its end.
+glint_status glint_scene_path(const glint_scene *scene, const double origin[3], const double direction[3], uint32_t depth,
+                              glint_segment out[GLINT_SEGMENTS_MAX], size_t *count, glint_error *error);
 
 // ---- A frame --------------------------------------------------------------------------------------------------------
 

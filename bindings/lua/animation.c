@@ -241,8 +241,10 @@ void glintL_job_build(lua_State *L, int index, int64_t n, double t)
     }
     lua_getiuservalue(L, index, GLINTL_JOB_SCENE);
     const glint_scene *scene = glintL_test_object(L, -1, GLINTL_SCENE);
-    if (scene)
+    if (scene) {
         glintL_trace_scene(L, scene);
+        glintL_update_curves(L, scene);
+    }
     lua_pop(L, 1);
 }
 

@@ -427,6 +427,7 @@ function glint.difference(fields) end
 ---@class glint.label_fields: glint.overlay_fields
 ---@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing. Parts between two $ are formulas, a subset of TeX
 ---@field at_point? glint.vec3  a point in the world next to which the label is drawn, instead of `at`; `margin` is the distance from the point. Default nil
+---@field hidden? "drawn"|"none"  whether the label is drawn if a surface hides `at_point`. Default "drawn"
 
 --- A text over the picture. A label set in frame(t) changes the picture's key, but nothing is rendered again for it.
 ---@class glint.label: glint.label_fields, glint.object
@@ -535,7 +536,79 @@ function glint.line(fields) end
 ---@return glint.arc
 function glint.arc(fields) end
 
----@alias glint.overlay glint.label|glint.colorbar|glint.axes|glint.arrow|glint.line|glint.arc
+---@class glint.polyline_fields: glint.curve_fields
+---@field points glint.vec3[]  2 .. 128 points in the world, joined by straight segments
+
+--- Straight segments between points of the world, drawn over the picture, with a label next to the middle point.
+---@class glint.polyline: glint.polyline_fields
+local polyline = {}
+
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
+function polyline:close() end
+
+---@param fields glint.polyline_fields
+---@return glint.polyline
+function glint.polyline(fields) end
+
+---@class glint.lobe_fields: glint.curve_fields
+---@field point glint.vec3  the point in the world at which light is reflected
+---@field material glint.material  the material whose highlight is shown
+---@field to_light glint.vec3  direction to the light
+---@field normal? glint.vec3  normal at the point. Default nil: the normal of the scene's surface at the point, on the side of the camera
+---@field scale? number  length of a highlight of 1, world units, > 0. Default nil: 1
+
+--- The polar diagram of a highlight, in the plane of normal and light: in each direction as long as the specular light
+--- of material:evaluate, the mean of red, green and blue. Computed before each frame from the material as it is then.
+---@class glint.lobe: glint.lobe_fields
+---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
+local lobe = {}
+
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
+function lobe:close() end
+
+---@param fields glint.lobe_fields
+---@return glint.lobe
+function glint.lobe(fields) end
+
+---@class glint.path_fields: glint.curve_fields
+---@field scene? glint.scene  the scene that the ray goes through. Default nil: the scene that is rendered
+---@field origin glint.vec3  begin of the ray in the world
+---@field direction glint.vec3  direction of the ray, not zero
+---@field depth? integer  number of surfaces at which the ray goes on, 0 .. 63. Default 4
+---@field reach? number  length of a segment that hits nothing, world units, > 0. Default nil: the length of the first segment
+
+--- The path of a ray, mirrored and refracted, with a dot at each hit. Rays with less than a hundredth of the light are
+--- left out, and there are at most 64 segments. Computed before each frame from the scene as it is then.
+---@class glint.path: glint.path_fields
+---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
+local ray_path = {}
+
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
+function ray_path:close() end
+
+---@param fields glint.path_fields
+---@return glint.path
+function glint.path(fields) end
+
+---@class glint.frustum_fields: glint.curve_fields
+---@field camera glint.camera  the camera whose view is shown
+---@field distance? number  distance of the far side from the eye along the view, world units, > 0. Default nil: the distance of the point that the camera looks at, or 1
+---@field aspect? number  width of the camera's picture divided by its height, > 0; a camera with `w` and `h` has its own. Default 16 / 9
+
+--- The view of a camera: edges from its eye to the corners of its picture, and the sides of the picture. Computed before
+--- each frame from the camera as it is then.
+---@class glint.frustum: glint.frustum_fields
+---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
+local frustum = {}
+
+--- Releases the object now instead of when it is collected. A scene that contains it can still use it.
+function frustum:close() end
+
+---@param fields glint.frustum_fields
+---@return glint.frustum
+function glint.frustum(fields) end
+
+---@alias glint.overlay glint.label|glint.colorbar|glint.axes|glint.arrow|glint.line|glint.arc|glint.polyline|glint.lobe|glint.path|glint.frustum
 
 -- ---- Scene ----
 

@@ -235,6 +235,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
     if (run->deferred && !glintL_call_settle(run))
         return raise_failure(L, run);
     glintL_trace_scene(L, scene);
+    glintL_update_curves(L, scene);
     glintL_find_derivatives(L, scene, &render);
     glintL_render_point(&render);
     if (run->mode == GLINTL_MODE_EXPLAIN && run->count == run->explain_frame) {

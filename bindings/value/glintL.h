@@ -209,6 +209,8 @@ void glintL_keep_closed(lua_State *L, int index);
 void glintL_trace_scene(lua_State *L, const glint_scene *scene);
 /// Runs the functions of one material, whose userdata is at `index`.
 void glintL_trace_material(lua_State *L, int index);
+/// run/curves.c: computes the points of the scene's lobes, paths and frustums from its present state.
+void glintL_update_curves(lua_State *L, const glint_scene *scene);
 /// The directions for material:evaluate. They need not be unit vectors.
 typedef struct glintL_geometry {
     double normal[3], to_light[3], to_eye[3];
@@ -311,7 +313,7 @@ typedef struct glintL_class {
 /// The members of the class that point to these functions.
 #define GLINTL_FUNCTION_MEMBERS .get = get, .set = set, .retain = retain, .release = release, .create = create
 
-#define GLINTL_DESC_SIZE 2816
+#define GLINTL_DESC_SIZE 6400
 
 /// Returns the class of a type from the metatable made by glintL_open_class.
 const glintL_class *glintL_class_of(lua_State *L, const char *type);
@@ -351,7 +353,7 @@ void glintL_open_light(lua_State *L);
 void glintL_open_camera(lua_State *L);
 void glintL_open_transform(lua_State *L);
 void glintL_open_shape(lua_State *L);
-void glintL_open_overlay(lua_State *L); ///< label, colorbar, axes, arrow, line and arc
+void glintL_open_overlay(lua_State *L); ///< label, colorbar, axes, arrow, line, arc, polyline, lobe, path, frustum
 void glintL_open_scene(lua_State *L);
 void glintL_open_image(lua_State *L);
 void glintL_open_math(lua_State *L);

@@ -1,4 +1,4 @@
-/// The parts of arrows, lines and arcs that surfaces hide, found by casting rays from the eye.
+/// The parts of curves, and the points of labels, that surfaces hide, found by casting rays from the eye.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -90,7 +90,7 @@ static bool find_parts(const glint_stages *stages, const glint_geometry_table *g
 
 static bool hides(const glint_overlay_desc *desc)
 {
-    return desc->kind >= GLINT_OVERLAY_ARROW && desc->hidden != GLINT_HIDDEN_DRAWN;
+    return glint_overlay_points(desc) && desc->hidden != GLINT_HIDDEN_DRAWN;
 }
 
 static glint_status find_all(const glint_stages *stages, const glint_plan *plan, glint_overlays *overlays,
@@ -105,7 +105,10 @@ static glint_status find_all(const glint_stages *stages, const glint_plan *plan,
     for (size_t i = 0; i < overlays->count && !status; i++) {
         if (!hides(&overlays->of[i]))
             continue;
+        const double point[2] = { 0, 0 };
         glint_pointer_find(overlays, &overlays->of[i], pointer);
+        if (pointer->count == 1 && !find_parts(stages, &table, overlays, pointer, point, 0, r, &overlays->hidden[i]))
+            status = glint_fail_nomem(error);
         for (int piece = 0; piece + 1 < pointer->count && !status; piece++) {
             double range[2];
             const double length = glint_pointer_piece(overlays, pointer, piece, range);

@@ -6,23 +6,25 @@
 
 #include <stdlib.h>
 
+#define LEAST 0.01 ///< share of the first ray's light below which a path does not follow a ray
+
 /// A group of which only lane 0 is used.
 typedef struct lane_group {
     _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP],
         normal[3][GLINT_GROUP];
-    _Alignas(64) double t[GLINT_GROUP];
-    _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP];
+    _Alignas(64) double reflected[3][GLINT_GROUP], refracted[3][GLINT_GROUP];
+    _Alignas(64) double t[GLINT_GROUP], ratio[GLINT_GROUP], reflectance[GLINT_GROUP];
+    _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP], leaving[GLINT_GROUP];
     _Alignas(64) float cosine[GLINT_GROUP], log2_specular[GLINT_GROUP];
     _Alignas(64) float facing[GLINT_GROUP], sine2[GLINT_GROUP], schlick[GLINT_GROUP];
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
-    uint16_t active, hits, lit, back, dark;
+    uint16_t active, hits, lit, back, dark, inward, total;
 } lane_group;
 
 static void cast_lane(const glint_stages *stages, const glint_geometry_table *geometry, lane_group *g)
 {
-    glint_cast_args cast = {
-        .group_count = 1, .active = &g->active, .geometry = geometry, .t = g->t, .prim = g->prim, .hits = &g->hits
-    };
+    glint_cast_args cast = { .group_count = 1, .active = &g->active, .geometry = geometry, .leaving = g->leaving,
+                             .inward = &g->inward, .t = g->t, .prim = g->prim, .hits = &g->hits };
     glint_surface_args surface = { .group_count = 1,
                                    .hits = &g->hits,
                                    .prim = g->prim,
@@ -109,11 +111,13 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
         status = glint_geometry_index(geometry, NULL, &table, error);
     if (!status) {
         g->active = 1;
-        for (int i = 0; i < GLINT_GROUP; i++)
+        for (int i = 0; i < GLINT_GROUP; i++) {
+            g->leaving[i] = GLINT_MISS;
             for (int c = 0; c < 3; c++) {
                 g->origin[c][i] = origin[c];
                 g->direction[c][i] = scaled[c];
             }
+        }
         cast_lane(stages, &table, g);
         *hit = g->hits & 1;
         if (*hit)
@@ -123,6 +127,174 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     free(g);
     return status;
 }
+
+// ---- Paths ----
+
+typedef struct ray {
+    double weight; ///< share of the first ray's light, the mean of red, green and blue
+    glint_media media; ///< the media that contain its origin
+    uint32_t depth; ///< number of surfaces before its origin
+    uint32_t leaving; ///< primitive that it starts on, or GLINT_MISS
+    bool inward; ///< whether it goes into that primitive
+} ray;
+
+typedef struct tracer {
+    const glint_stages *stages;
+    const glint_geometry *geometry;
+    glint_geometry_table table;
+    lane_group *g;
+    ray rays[GLINT_SEGMENTS_MAX]; ///< the ray of each segment
+    glint_segment *segments;
+    size_t count;
+} tracer;
+
+static const glint_material_desc *material_at(const tracer *t, uint32_t index)
+{
+    return glint_material_get(t->geometry->materials.items[index]);
+}
+
+static double index_of(const tracer *t, uint32_t medium)
+{
+    return medium == GLINT_NO_MEDIUM ? 1 : material_at(t, medium)->ior;
+}
+
+/// Casts ray number `i` and computes the surface that it hits.
+static void cast_segment(tracer *t, size_t i)
+{
+    lane_group *g = t->g;
+    glint_segment *segment = &t->segments[i];
+    for (int c = 0; c < 3; c++) {
+        g->origin[c][0] = segment->from[c];
+        g->direction[c][0] = segment->direction[c];
+    }
+    g->active = 1;
+    g->leaving[0] = t->rays[i].leaving;
+    g->inward = t->rays[i].inward;
+    cast_lane(t->stages, &t->table, g);
+    segment->hit = g->hits & 1;
+    for (int c = 0; c < 3; c++)
+        segment->to[c] = g->point[c][0];
+}
+
+/// Computes the directions in which a ray goes on from the hit in the lanes. ratio: the refractive index on its side
+/// divided by the index beyond.
+static void bounce(tracer *t, double ratio)
+{
+    lane_group *g = t->g;
+    glint_bounce_args args = { .group_count = 1, .wanted = &g->active, .ratio = g->ratio,
+                               .reflectance = g->reflectance, .total = &g->total };
+    g->ratio[0] = ratio;
+    for (int c = 0; c < 3; c++) {
+        args.direction[c] = g->direction[c];
+        args.normal[c] = g->normal[c];
+        args.reflected[c] = g->reflected[c];
+        args.refracted[c] = g->refracted[c];
+    }
+    t->stages->geometry[GLINT_DOUBLE].bounce(&args);
+}
+
+/// Adds a ray from the end of segment `i`, if it carries enough light and there is space.
+static void send(tracer *t, size_t i, const ray *r, double direction[3][GLINT_GROUP])
+{
+    if (r->weight < LEAST || t->count == GLINT_SEGMENTS_MAX)
+        return;
+    glint_segment *segment = &t->segments[t->count];
+    vec_copy(segment->from, t->segments[i].to);
+    for (int c = 0; c < 3; c++)
+        segment->direction[c] = direction[c][0];
+    t->rays[t->count++] = *r;
+}
+
+static double mean(const double color[3]) { return (color[0] + color[1] + color[2]) / 3; }
+
+/// Returns the share of the light along the mirrored ray, without Fresnel's formula.
+static double mirror_of(const glint_material_desc *desc)
+{
+    return desc->program.mirror ? 1 : desc->has_mirror ? mean(desc->mirror) : desc->fresnel;
+}
+
+/// Sends on the rays of the hit of segment `i`, which is in the lanes.
+static void go_on(tracer *t, size_t i)
+{
+    const lane_group *g = t->g;
+    const glint_prim *prim = &t->table.prims[g->prim[0]];
+    const glint_material_desc *desc = material_at(t, g->material[0]);
+    const bool back = g->back & 1;
+    const double transmission = desc->program.transmission ? 1 : mean(desc->transmission);
+    ray mirrored = t->rays[i], refracted = mirrored;
+    uint32_t before = glint_media_top(&mirrored.media), beyond = g->material[0];
+    if (transmission > 0) {
+        before = glint_media_before(&mirrored.media, prim->medium, back);
+        glint_media_cross(&refracted.media, prim->medium, back);
+        beyond = glint_media_top(&refracted.media);
+    }
+    bounce(t, transmission > 0 || desc->fresnel ? index_of(t, before) / index_of(t, beyond) : 1);
+    const bool total = g->total & 1;
+    const double part = desc->fresnel ? g->reflectance[0] : 1, mirror = total && transmission > 0 ? 1 : mirror_of(desc) * part;
+    mirrored.depth = refracted.depth = mirrored.depth + 1;
+    mirrored.leaving = refracted.leaving = g->prim[0];
+    mirrored.inward = back;
+    refracted.inward = !back;
+    mirrored.weight *= mirror;
+    refracted.weight *= total ? 0 : transmission * (desc->fresnel ? 1 - part : 1);
+    send(t, i, &refracted, t->g->refracted);
+    send(t, i, &mirrored, t->g->reflected);
+}
+
+/// Follows the ray of the first segment. Returns the number of segments.
+static size_t follow(tracer *t, uint32_t depth)
+{
+    t->rays[0] = (ray) { .weight = 1, .leaving = GLINT_MISS };
+    t->count = 1;
+    for (size_t i = 0; i < t->count; i++) {
+        cast_segment(t, i);
+        if (t->segments[i].hit && t->rays[i].depth < depth)
+            go_on(t, i);
+    }
+    return t->count;
+}
+
+glint_status glint_scene_path(const glint_scene *scene, const double origin[3], const double direction[3], uint32_t depth,
+                              glint_segment out[GLINT_SEGMENTS_MAX], size_t *count, glint_error *error)
+{
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(origin, error);
+    GLINT_REFUSE_NULL(direction, error);
+    GLINT_REFUSE_NULL(out, error);
+    GLINT_REFUSE_NULL(count, error);
+    glint_status status = glint_check_vector("origin", origin, error);
+    if (!status)
+        status = glint_check_direction("direction", direction, error);
+    if (status)
+        return status;
+    tracer *t = calloc(1, sizeof *t);
+    lane_group *g = glint_alloc(1, sizeof *g);
+    glint_geometry *geometry = NULL;
+    if (!t || !g)
+        status = glint_fail_nomem(error);
+    else
+        status = glint_choose_isa(NULL, &t->stages, error);
+    if (!status)
+        status = glint_geometry_of(scene, &geometry, error);
+    if (!status)
+        status = glint_geometry_check_reach(geometry, "origin", origin, error);
+    if (!status)
+        status = glint_geometry_index(geometry, NULL, &t->table, error);
+    if (!status) {
+        t->geometry = geometry;
+        t->g = g;
+        t->segments = out;
+        vec_copy(out[0].from, origin);
+        vec_normalize(out[0].direction, direction);
+        *count = follow(t, depth);
+    }
+    glint_geometry_release(geometry);
+    free(g);
+    free(t);
+    return status;
+}
+
+// ---- Reflections ----
 
 /// Runs the stages of microfacets, after `light`.
 static void evaluate_facets(const glint_stages *stages, const glint_light_args *light, lane_group *g)

@@ -114,6 +114,25 @@ static void check_position(const check *c)
     warn(c, message);
 }
 
+/// Warns about a polyline if the picture shows it only in part or not at all.
+static void check_polyline(const check *c)
+{
+    const glint_pointer *p = &c->layout->place->pointer;
+    const bool is_cut = p->behind[0] || p->behind[1];
+    bool shows = false;
+    double range[2];
+    for (int i = 0; i + 1 < p->count; i++)
+        shows = shows || glint_pointer_piece(c->layout->overlays, p, i, range) >= 0;
+    if (c->layout->desc->point_count < 2)
+        warn(c, "it has no length; it is not drawn");
+    else if (is_cut)
+        warn(c, p->count ? "a part of it is behind the camera; this part is not drawn" : "it is behind the camera; it is not drawn");
+    else if (!shows)
+        warn(c, "it lies outside the picture");
+    else if (c->layout->place->has_rect)
+        check_position(c);
+}
+
 /// Warns about an arrow, line, arc or label at a point if the picture shows it only in part or not at all.
 static void check_pointer(const check *c)
 {
@@ -122,6 +141,10 @@ static void check_pointer(const check *c)
     const glint_overlay_kind kind = l->desc->kind;
     const bool is_line = kind == GLINT_OVERLAY_ARROW || kind == GLINT_OVERLAY_LINE;
     char message[200];
+    if (kind >= GLINT_OVERLAY_POLYLINE) {
+        check_polyline(c);
+        return;
+    }
     if (is_line && glint_pointer_is_point(l->desc)) {
         snprintf(message, sizeof message, "to: expected a point other than from {%.15g, %.15g, %.15g}; it is not drawn", l->desc->from[0],
                  l->desc->from[1], l->desc->from[2]);
@@ -161,7 +184,7 @@ glint_status glint_overlays_check(const glint_overlays *overlays, double dpi, vo
     glint_status status = glint_ink_open(overlays->width, overlays->height, &ink, error);
     if (status)
         return status;
-    status = glint_layout_places(overlays, &places, error);
+    status = glint_layout_places(overlays, dpi, &ink, &places, error);
     for (size_t i = 0; i < overlays->count && !status; i++) {
         const glint_overlay_desc *desc = &overlays->of[i];
         glint_layout layout = glint_layout_begin_at(overlays, i, dpi, places, &ink);

@@ -47,7 +47,7 @@ static void draw_label(const glint_layout *layout, int x, int y)
 
 glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_ink *ink)
 {
-    static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_ARC] = 0, [GLINT_OVERLAY_CHART] = 0 };
+    static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_CHART] = 0 };
     glint_layout layout = { .overlays = overlays, .desc = desc, .dpi = dpi, .ink = ink };
     layout.em = desc->has_size ? glint_layout_pixels(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
     layout.typeface = glint_typeface_open(ink->letters, layout.em);
@@ -56,20 +56,6 @@ glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_over
     layout.padding = desc->has_background ? (int)ceil(PADDING * layout.em) : 0;
     memcpy(layout.text, desc->text, sizeof layout.text);
     return layout;
-}
-
-glint_status glint_layout_places(const glint_overlays *overlays, glint_place **out, glint_error *error)
-{
-    bool points = false;
-    for (size_t i = 0; i < overlays->count; i++)
-        points = points || glint_overlay_points(&overlays->of[i]);
-    *out = points ? calloc(overlays->count, sizeof **out) : NULL;
-    if (points && !*out)
-        return glint_fail_nomem(error);
-    for (size_t i = 0; i < overlays->count && points; i++)
-        if (glint_overlay_points(&overlays->of[i]))
-            glint_pointer_find(overlays, &overlays->of[i], &(*out)[i].pointer);
-    return GLINT_OK;
 }
 
 glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, double dpi, glint_place *places, glint_ink *ink)
@@ -96,8 +82,6 @@ static void keep_place(glint_layout *layout)
 
 void glint_layout_place(glint_layout *layout, double dpi)
 {
-    static void (*const measures[])(glint_layout *) = { measure_label, glint_colorbar_measure, glint_axes_measure,
-                                                        measure_label, measure_label, measure_label, glint_chart_measure };
     const glint_overlay_desc *desc = layout->desc;
     const double margin = desc->has_margin ? glint_layout_pixels(desc->margin, dpi) : layout->em / 2;
     const int sides[2] = { layout->overlays->width, layout->overlays->height };
@@ -106,7 +90,14 @@ void glint_layout_place(glint_layout *layout, double dpi)
         wrap(layout, margin);
     for (int i = 0; i < 2; i++)
         layout->extent[i] = desc->has_extent ? glint_layout_pixels(desc->extent[i], dpi) : sides[i] - 2 * margin;
-    measures[desc->kind](layout);
+    if (desc->kind == GLINT_OVERLAY_COLORBAR)
+        glint_colorbar_measure(layout);
+    else if (desc->kind == GLINT_OVERLAY_AXES)
+        glint_axes_measure(layout);
+    else if (desc->kind == GLINT_OVERLAY_CHART)
+        glint_chart_measure(layout);
+    else
+        measure_label(layout);
     layout->size[0] = layout->width + 2 * layout->padding;
     layout->size[1] = layout->height + 2 * layout->padding;
     for (int i = 0; i < 2; i++)
@@ -117,10 +108,29 @@ void glint_layout_place(glint_layout *layout, double dpi)
     keep_place(layout);
 }
 
+glint_status glint_layout_places(const glint_overlays *overlays, double dpi, glint_ink *ink, glint_place **out,
+                                 glint_error *error)
+{
+    bool points = false;
+    for (size_t i = 0; i < overlays->count; i++)
+        points = points || glint_overlay_points(&overlays->of[i]);
+    *out = points ? calloc(overlays->count, sizeof **out) : NULL;
+    if (points && !*out)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < overlays->count && points; i++) {
+        const glint_overlay_desc *desc = &overlays->of[i];
+        if (glint_overlay_points(desc)) {
+            glint_pointer_find(overlays, desc, &(*out)[i].pointer);
+        } else if (!desc->has_box) {
+            glint_layout layout = glint_layout_begin_at(overlays, i, dpi, *out, ink);
+            glint_layout_place(&layout, dpi);
+        }
+    }
+    return GLINT_OK;
+}
+
 static void draw(glint_layout *layout, double dpi)
 {
-    static void (*const draws[])(const glint_layout *, int, int) = { draw_label, glint_colorbar_draw, glint_axes_draw,
-                                                                     draw_label, draw_label, draw_label, glint_chart_draw };
     const glint_overlay_desc *desc = layout->desc;
     const int *corner = layout->corner, *size = layout->size;
     if (desc->kind == GLINT_OVERLAY_AXES && desc->has_box) {
@@ -135,13 +145,21 @@ static void draw(glint_layout *layout, double dpi)
     }
     if (desc->has_background)
         glint_layout_fill(layout, corner[0], corner[1], size[0], size[1], desc->background, desc->opacity);
-    draws[desc->kind](layout, corner[0] + layout->padding, corner[1] + layout->padding);
+    const int x = corner[0] + layout->padding, y = corner[1] + layout->padding;
+    if (desc->kind == GLINT_OVERLAY_COLORBAR)
+        glint_colorbar_draw(layout, x, y);
+    else if (desc->kind == GLINT_OVERLAY_AXES)
+        glint_axes_draw(layout, x, y);
+    else if (desc->kind == GLINT_OVERLAY_CHART)
+        glint_chart_draw(layout, x, y);
+    else
+        draw_label(layout, x, y);
 }
 
 glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_ink *ink, glint_error *error)
 {
     glint_place *places;
-    glint_status status = glint_layout_places(overlays, &places, error);
+    glint_status status = glint_layout_places(overlays, dpi, ink, &places, error);
     for (size_t i = 0; i < overlays->count && !status; i++) {
         glint_layout layout = glint_layout_begin_at(overlays, i, dpi, places, ink);
         draw(&layout, dpi);

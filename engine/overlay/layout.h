@@ -24,9 +24,11 @@ typedef struct glint_layout {
     char text[GLINT_OVERLAY_TEXT_SIZE]; ///< text of a label, wrapped
 } glint_layout;
 
-/// Computes the places (curves and text positions) of a frame's overlays. *out is NULL if no overlay points at the
-/// world; otherwise the caller frees it.
-glint_status glint_layout_places(const glint_overlays *overlays, glint_place **out, glint_error *error);
+/// Computes the curves of a frame's overlays that point at the world, and the rectangles of those that do not, which
+/// their texts must not cover. *out is NULL if no overlay points at the world; otherwise the caller frees it.
+/// ink  its font is the overlays'; nothing is drawn.
+glint_status glint_layout_places(const glint_overlays *overlays, double dpi, glint_ink *ink, glint_place **out,
+                                 glint_error *error);
 /// Begins overlay number `i` of a frame. places: the result of glint_layout_places.
 glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, double dpi, glint_place *places, glint_ink *ink);
 /// Begins an overlay.

@@ -16,14 +16,18 @@ struct glint_overlay {
 };
 
 #define POINTS_MAX 10000.0
+#define DEPTH_MAX 63 ///< largest depth of a path
 
-const char *const glint_overlay_kinds[] = { "label", "colorbar", "axes", "arrow", "line", "arc", "chart" };
+const char *const glint_overlay_kinds[] = { "label", "colorbar", "axes", "arrow", "line", "arc",
+                                           "polyline", "lobe", "path", "frustum", "chart" };
 
 glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
 {
-    glint_overlay_desc desc = { .kind = kind, .color = { 1, 1, 1 }, .opacity = 1, .high = 1, .names = { "x", "y", "z" } };
-    desc.from[0] = kind == GLINT_OVERLAY_ARC;
-    desc.to[kind == GLINT_OVERLAY_ARC] = 1;
+    glint_overlay_desc desc = { .kind = kind, .color = { 1, 1, 1 }, .opacity = 1, .high = 1, .names = { "x", "y", "z" },
+                                .depth = 4, .aspect = 16.0 / 9 };
+    const bool has_directions = kind == GLINT_OVERLAY_ARC || kind == GLINT_OVERLAY_LOBE;
+    desc.from[0] = has_directions;
+    desc.to[has_directions] = 1;
     if (kind == GLINT_OVERLAY_COLORBAR) {
         desc.at[0] = 1;
         desc.at[1] = 0.5;
@@ -189,23 +193,88 @@ static glint_status check_box(const glint_overlay_desc *desc, glint_error *error
     return status;
 }
 
+static glint_status check_radius(const char *name, const glint_overlay_desc *desc, glint_error *error)
+{
+    if (!desc->has_radius || (desc->radius > 0 && isfinite(desc->radius)))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: number > 0 expected, got %.15g", name, desc->radius);
+}
+
+static glint_status check_line(const glint_overlay_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_vector("from", desc->from, error);
+    if (!status)
+        status = glint_check_vector("to", desc->to, error);
+    for (int i = 0; i < 3 && !status; i++)
+        status = check_span("to", desc->from, desc->to, i, error);
+    return status;
+}
+
+static glint_status check_arc(const glint_overlay_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_vector("at", desc->point, error);
+    if (!status)
+        status = glint_check_direction("from", desc->from, error);
+    if (!status)
+        status = glint_check_direction("to", desc->to, error);
+    return status ? status : check_radius("radius", desc, error);
+}
+
+static glint_status check_points(const glint_overlay_desc *desc, glint_error *error)
+{
+    const size_t least = desc->kind == GLINT_OVERLAY_POLYLINE ? 2 : 0;
+    glint_status status = GLINT_OK;
+    if (desc->point_count < least || desc->point_count > GLINT_OVERLAY_POINTS_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "points: %zu .. %d points expected, got %zu", least,
+                          GLINT_OVERLAY_POINTS_MAX, desc->point_count);
+    for (size_t i = 0; i < desc->point_count && !status; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "points[%zu]", i + 1);
+        status = glint_check_vector(name, desc->points[i], error);
+        for (int c = 0; c < 3 && !status && i > 0; c++)
+            status = check_span(name, desc->points[i - 1], desc->points[i], c, error);
+    }
+    return status;
+}
+
+/// Checks the fields from which the points of a lobe, a path or a frustum are computed.
+static glint_status check_source(const glint_overlay_desc *desc, glint_error *error)
+{
+    static const char *const radius[] = { "scale", "reach", "distance" };
+    glint_status status = check_radius(radius[desc->kind - GLINT_OVERLAY_LOBE], desc, error);
+    if (!status && desc->kind == GLINT_OVERLAY_LOBE) {
+        status = glint_check_vector("point", desc->point, error);
+        if (!status && desc->has_normal)
+            status = glint_check_direction("normal", desc->from, error);
+        if (!status)
+            status = glint_check_direction("to_light", desc->to, error);
+    } else if (!status && desc->kind == GLINT_OVERLAY_PATH) {
+        status = glint_check_vector("origin", desc->from, error);
+        if (!status)
+            status = glint_check_direction("direction", desc->to, error);
+        if (!status && !(desc->depth >= 0 && desc->depth <= DEPTH_MAX && desc->depth == floor(desc->depth)))
+            status = glint_fail(error, GLINT_ERR_INVALID, "depth: whole number 0 .. %d expected, got %.15g", DEPTH_MAX, desc->depth);
+    } else if (!status && !(desc->aspect > 0 && isfinite(desc->aspect))) {
+        status = glint_fail(error, GLINT_ERR_INVALID, "aspect: number > 0 expected, got %.15g", desc->aspect);
+    }
+    return status;
+}
+
 /// Checks the points and directions of the world that an overlay has.
 static glint_status check_pointer(const glint_overlay_desc *desc, glint_error *error)
 {
-    const bool is_arc = desc->kind == GLINT_OVERLAY_ARC;
-    glint_status (*const check_end)(const char *, const double *, glint_error *) = is_arc ? glint_check_direction : glint_check_vector;
     glint_status status = GLINT_OK;
-    if (is_arc || desc->has_point)
-        status = glint_check_vector(is_arc ? "at" : "at_point", desc->point, error);
-    if (status || desc->kind == GLINT_OVERLAY_LABEL)
+    if (desc->kind == GLINT_OVERLAY_LABEL) {
+        status = glint_check_vector("at_point", desc->point, error);
+        if (!status && desc->hidden == GLINT_HIDDEN_DASHED)
+            status = glint_fail(error, GLINT_ERR_INVALID, "hidden: drawn or none expected for a label, got dashed");
         return status;
-    status = check_end("from", desc->from, error);
-    if (!status)
-        status = check_end("to", desc->to, error);
-    for (int i = 0; i < 3 && !status && !is_arc; i++)
-        status = check_span("to", desc->from, desc->to, i, error);
-    if (!status && is_arc && desc->has_radius && !(desc->radius > 0 && isfinite(desc->radius)))
-        status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
+    }
+    status = desc->kind == GLINT_OVERLAY_ARC        ? check_arc(desc, error)
+             : desc->kind < GLINT_OVERLAY_POLYLINE ? check_line(desc, error)
+                                                    : check_points(desc, error);
+    if (!status && desc->kind > GLINT_OVERLAY_POLYLINE)
+        status = check_source(desc, error);
     if (!status && desc->has_width)
         status = glint_check_range("width", desc->width, 0, POINTS_MAX, "points 0 .. 10000", error);
     if (!status && (unsigned)desc->hidden > GLINT_HIDDEN_NONE)
@@ -262,7 +331,7 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 {
     if ((unsigned)desc->kind > GLINT_OVERLAY_CHART)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such overlay");
-    static const char *const texts[] = { "text", "title", "text", "label", "label", "label", "title" };
+    static const char *const texts[] = { "text", "title", "text", "label", "label", "label", "label", "label", "label", "label", "title" };
     static const char *const names[] = { "labels[1]", "labels[2]", "labels[3]" };
     glint_status status = check_drawn(texts[desc->kind], desc->text, sizeof desc->text, error);
     for (int i = 0; i < 3 && !status; i++)

@@ -1,11 +1,11 @@
-/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs, charts. Internal.
+/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs, polylines, charts. Internal.
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key
 ///     layout.c     the position of each; colorbar.c, axes.c, box_axes.c: their parts
 ///     chart.c      charts; curves.c: their curves, which overlays share
 ///     marks.c      the round numbers along colour bars, axes and charts
-///     pointer.c    the curves of arrows, lines and arcs in the picture, and positions for texts next to them
+///     pointer.c    the curves of arrows, lines, arcs and polylines in the picture, and positions for texts next to them
 ///     drawing.c    texts, rectangles and strokes, in the ink of engine/ink
 ///     faults.c     warnings about overlays that the picture cannot show
 #ifndef GLINT_OVERLAY_H
@@ -49,7 +49,7 @@ typedef struct glint_overlays {
 
 extern const char *const glint_overlay_kinds[]; ///< "label", ...
 
-/// Returns whether an overlay points at a place in the world: an arrow, line, arc, or label at a point.
+/// Returns whether an overlay points at places in the world: an arrow, line, arc or polyline, or a label at a point.
 static inline bool glint_overlay_points(const glint_overlay_desc *desc)
 {
     return (desc->kind >= GLINT_OVERLAY_ARROW && desc->kind != GLINT_OVERLAY_CHART) || (desc->kind == GLINT_OVERLAY_LABEL && desc->has_point);

@@ -131,6 +131,10 @@ static glint_key pointer_key(const glint_overlays *overlays, const glint_overlay
     ADD(key, d->from);
     ADD(key, d->to);
     ADD(key, d->point);
+    if (d->kind >= GLINT_OVERLAY_POLYLINE) {
+        key = glint_key_add(key, d->points, d->point_count * sizeof *d->points);
+        key = glint_key_add(key, d->point_flags, d->point_count);
+    }
     return ADD(key, look);
 }
 

@@ -4,20 +4,22 @@
 
 #include "engine/overlay/overlay.h"
 
-#define GLINT_POINTER_POINTS 65 ///< of an arc
+#define GLINT_ARC_POINTS 65 ///< points of an arc
+#define GLINT_POINTER_POINTS (2 * GLINT_OVERLAY_POINTS_MAX) ///< most points: each piece of a polyline may be cut
 
 /// The points of an overlay that points at the world, as far as they lie in front of the camera, in order: 1 for a
-/// label, 2 for an arrow or a line, 65 for an arc. The curve through them has a parameter that is i at point i and
+/// label, 2 for an arrow or a line, 65 for an arc, and those of a polyline. The curve through them has a parameter that is i at point i and
 /// grows evenly in the picture between points.
 typedef struct glint_pointer {
     int count; ///< 0: nothing is drawn
     double world[GLINT_POINTER_POINTS][3];
     double pixel[GLINT_POINTER_POINTS][2]; ///< positions in pixels from the picture's upper left corner
     double depth[GLINT_POINTER_POINTS]; ///< along the view
+    bool starts[GLINT_POINTER_POINTS]; ///< of a polyline: no piece leads to the point
+    bool marked[GLINT_POINTER_POINTS]; ///< of a polyline: a dot is drawn at the point
     double range[2]; ///< first and last parameter to draw; for lines, limited to the part in and close to the picture
-    double length; ///< length in pixels of the part of the curve in `range`
     bool behind[2]; ///< whether the begin and the end of a line lie behind the camera; for an arc or a label both
-        ///< flags are equal
+        ///< flags are equal. Of a polyline: whether a piece begins or ends there
 } glint_pointer;
 
 /// Computes the curve of an overlay that points.

@@ -79,6 +79,23 @@ glint_overlays_camera glint_plan_camera_of_overlays(const glint_plan_camera *cam
     return out;
 }
 
+void glint_camera_point(const glint_camera_desc *desc, double width, double height, const double pixel[2], double distance,
+                        double point[3])
+{
+    if (!desc || !pixel || !point)
+        return;
+    glint_render_desc render = glint_render_desc_default();
+    render.width = width;
+    render.height = height;
+    glint_plan_camera camera;
+    glint_plan_camera_init(&camera, desc, &render);
+    const double shift = 0.5 - camera.pixel_offset, scale = camera.orthographic ? 1 : distance;
+    const double right = (2 * (pixel[0] - shift) - camera.span[0]) * scale;
+    const double up = (camera.span[1] - 2 * (pixel[1] - shift)) * scale;
+    for (int c = 0; c < 3; c++)
+        point[c] = camera.eye[c] + (distance * camera.forward[c] + (right * camera.right[c] + up * camera.up[c]));
+}
+
 bool glint_camera_project(const glint_camera_desc *desc, double width, double height, const double point[3], double pixel[2],
                           double *depth)
 {

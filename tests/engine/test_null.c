@@ -204,6 +204,7 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_camera_set(NULL, NULL, NULL));
     NOTHING(glint_camera_get(NULL));
     glint_camera_window(NULL, 0, 0, NULL);
+    glint_camera_point(NULL, 0, 0, NULL, 0, NULL);
     NOTHING(glint_camera_project(NULL, 0, 0, NULL, NULL, NULL));
     NOTHING(glint_camera_retain(NULL));
     glint_camera_release(NULL);
@@ -261,6 +262,7 @@ static void test_null_of_every_function(void **state)
     NOTHING(glint_scene_overlay_at(NULL, 0));
     glint_scene_light_pass(NULL, 0, NULL);
     INVALID(glint_scene_cast(NULL, NULL, NULL, NULL, NULL, NULL));
+    INVALID(glint_scene_path(NULL, NULL, NULL, 0, NULL, NULL, NULL));
     assert_int_equal(glint_pass_from_name(NULL), GLINT_PASS_COUNT);
     glint_tone_steps(NULL, NULL);
     INVALID(glint_plan_create(NULL, NULL, NULL, NULL));

@@ -53,13 +53,16 @@ local FIELDS = {
   spheres = { "data", "format", "material", "index" },
   sphere_mesh = { "center", "radius", "segments", "shading" },
   ambient_occlusion = { "distance" },
-  label = { "text", "at", "at_point", "position", "size", "margin", "color", "background", "opacity" },
+  label = { "text", "at", "at_point", "hidden", "position", "size", "margin", "color", "background", "opacity" },
   colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
   axes = { "labels", "length", "at", "position", "size", "box", "values" },
   arrow = { "from", "to", "label", "width", "hidden", "size", "margin", "color", "background" },
   line = { "from", "to", "label", "width", "hidden", "opacity" },
   arc = { "at", "from", "to", "radius", "label", "width", "hidden" },
   chart = { "series", "x", "title", "x_label", "y_label", "x_scale", "y_scale", "x_range", "y_range", "extent", "at", "size" },
+  polyline = { "points", "label", "width", "hidden" },
+  lobe = { "point", "to_light", "normal", "scale", "label", "hidden" },
+  path = { "origin", "direction", "depth", "reach", "hidden" },
 }
 -- The functions of the module that may raise a message. Lua's own messages for a programming error are not accepted.
 local function refused(message)
@@ -88,6 +91,8 @@ local GOOD = {
   arrow = { from = { 0, 0, 0 }, to = { 2, 1, 0 }, label = "a" }, line = { from = { -2, 0, 0 }, to = { 2, 1, 0 } },
   arc = { at = { 0, 1, 0 }, from = { 1, 0, 0 }, to = { 0, 1, 0 } },
   chart = { series = { { y = { 1, 2 } } } },
+  polyline = { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 } } }, path = { origin = { -5, 0, 0 }, direction = { 1, 0.1, 0 } },
+  lobe = { point = { 0, 1, 0 }, material = glint.material { specular = 1 }, to_light = { 1, 1, 0 }, normal = { 0, 1, 0 } },
 }
 
 -- The fields of the other objects are in the engine's tables. "part" adds a shape to a combined solid.

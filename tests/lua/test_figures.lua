@@ -87,6 +87,9 @@ function tests.errors()
   raises("line.to: ends at a finite distance expected, got -1e+308 to 1e+308 along y", glint.line, { from = { 0, -1e308, 0 }, to = { 0, 1e308, 0 } })
   raises("arrow.width: points 0 .. 10000 expected, got -1", glint.arrow, { from = from, to = to, width = -1 })
   raises("arrow.hidden: \"drawn\", \"dashed\" or \"none\" expected", glint.arrow, { from = from, to = to, hidden = "dotted" })
+  raises("label.hidden: drawn or none expected for a label, got dashed", glint.label,
+    { text = "a", at_point = from, hidden = "dashed" })
+  raises("label.at_point[1]: finite number expected, got nan", glint.label, { text = "a", at_point = { 0 / 0, 0, 0 } })
   raises("arrow.lable: no such field; did you mean 'label'?", glint.arrow, { from = from, to = to, lable = "n" })
   raises("arrow.at: no such field", glint.arrow, { from = from, to = to, at = "top" })
   raises("arrow.label: at most 383 bytes expected, got 384", glint.arrow, { from = from, to = to, label = ("a"):rep(384) })
@@ -221,6 +224,51 @@ function tests.free_places()
   end
   local inner, outer = box_of({ label("red", edge) }, 1)
   check(outer[1] < WIDTH and outer[1] - inner[1] >= 23, "inside the picture: %g .. %g", inner[1], outer[1])
+end
+
+-- Whether two rectangles, each { low, high }, have a pixel in common.
+local function overlap(a, b)
+  return a[1][1] <= b[2][1] and b[1][1] <= a[2][1] and a[1][2] <= b[2][2] and b[1][2] <= a[2][2]
+end
+
+-- Fourteen labels at one point cover neither each other nor a title that is added after them.
+function tests.crowds()
+  local objects, boxes = {}, {}
+  for i = 1, 14 do
+    objects[i] = glint.label { text = "M" .. i, at_point = { 0.3, 0.2, 0 }, size = 13, color = "blue", background = "blue" }
+  end
+  objects[15] = glint.label { text = "TITLE", at = "center", size = 13, color = "blue", background = "blue" }
+  for i, object in ipairs(objects) do
+    object.color, object.background = "red", "red"
+    boxes[i] = { box_of(objects, 1) }
+    object.color, object.background = "blue", "blue"
+    check(boxes[i][2][1] - boxes[i][1][1] >= 15 and boxes[i][2][2] - boxes[i][1][2] >= 12, "label %d is whole", i)
+    for k = 1, i - 1 do check(not overlap(boxes[i], boxes[k]), "labels %d and %d overlap", k, i) end
+  end
+end
+
+-- A label with hidden = "none" is drawn exactly if a ray from the eye reaches its point.
+function tests.hidden_labels()
+  local ball = glint.sphere { center = { 0.3, 0.2, 0.5 }, radius = 0.8, material = glint.material { diffuse = 0 } }
+  for name, camera in pairs(CAMERAS) do
+    local label = glint.label { text = "M", at_point = { 0, 0, 0 }, hidden = "none" }
+    local scene, counts = scene_of(camera, { ball, label }), { 0, 0 }
+    local forward = (vec(0.3, 0.2, 0) - camera.eye):unit()
+    for i = -6, 6 do
+      local point = vec(0.3 + i / 4, 0.2 + i / 9, -0.4)
+      local way = camera.projection == "orthographic" and forward * (point - camera.eye):dot(forward) or point - camera.eye
+      local hit = scene:cast(point - way, way)
+      local hides = hit ~= nil and hit.t < 1
+      label.at_point = point
+      counts[hides and 1 or 2] = counts[hides and 1 or 2] + 1
+      check((lit((draw(scene))) == 0) == hides, "%s: the label at %s", name, tostring(point))
+    end
+    check(counts[1] > 3 and counts[2] > 3, "%s: %d points are hidden, %d are not", name, counts[1], counts[2])
+    label.hidden, label.at_point = "drawn", { 0.3, 0.2, -0.4 }
+    check(lit((draw(scene))) > 0, "%s: drawn through by default", name)
+  end
+  local on = glint.label { text = "M", at_point = { 0.3, 0.2, 1.3 }, hidden = "none" }
+  check(lit((draw(scene_of(CAMERAS.perspective, { ball, on })))) > 0, "a surface does not hide a point that lies on it")
 end
 
 -- A point of a line is drawn exactly if a ray from the eye reaches the point.
