@@ -61,11 +61,13 @@ picture chessboard --frames 1
 picture combined --samples 4
 steps fit
 picture flight --frames 30
+picture cosine --size 640x360
 picture earth --frames 1
 picture focus --frames 16
 picture furnace
 picture gr_room --dialect gr --samples 4
 picture gr_scene --dialect gr
+picture highlight_angles --size 640x360
 picture indirect --set samples=32 --frames 3 --samples 4
 picture labels --frames 13
 picture lamps
@@ -80,8 +82,10 @@ picture molecule --set style=sticks
 picture moving_light --frames 31 --samples 4
 "$glint" scripts/sphereflake.lua --set size=3 --set nff="$out/flake.nff" -o none --quiet
 picture nff --set file="$out/flake.nff"
+picture normals --size 640x360
 picture occlusion --frames 2
 picture particle_box --samples 9
+picture penumbra --size 640x360
 picture phong_and_blinn --frames 4 --samples 4
 picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --samples 4 --bits 8 --transfer srgb
 picture protein --size 320x180
@@ -93,6 +97,7 @@ picture shading --size 400x200 --frames 5
 picture shininess_sweep --frames 5 --samples 4
 picture shutter --frames 5
 picture sky --frames 1 --set samples=64
+picture snell --size 640x360
 picture soft_shadows --frames 11 --samples 4
 picture sphereflake --samples 4
 picture spotlights --size 320x180

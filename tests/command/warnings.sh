@@ -368,7 +368,10 @@ for script in "$root"/scripts/*.lua; do
     one=${PRELOAD:+-f 1}                   # all frames take a sanitizer minutes
     [ "$name" != fit.lua ] || one=         # needs all of its frames
     [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
-    [[ $name != labels.lua && $name != vectors.lua && $name != furnace.lua ]] || size=320x180 # letters of 10 pixels fit
+    case $name in # letters of 10 pixels fit
+        cosine.lua | furnace.lua | highlight_angles.lua | labels.lua | normals.lua | penumbra.lua | snell.lua | vectors.lua)
+            size=320x180 ;;
+    esac
     run "$script" --size $size --samples 1 --warnings=error $dialect $one
     result $? "$name"
 done
