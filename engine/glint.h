@@ -1254,6 +1254,25 @@ typedef enum glint_pass {
     GLINT_PASS_LIGHT = GLINT_PASS_DERIVATIVE + 8
 } glint_pass;
 
+/// The passes in the order of glint_pass: PASS(ID, name, channels, LOOK) for each one. The look is how a picture shows
+/// the pass: LIGHT by the tone curve, SHARE as grey from 0 to 1, DEPTH, NORMAL and OBJECT as bindings/README.md says.
+#define GLINT_PASSES(PASS) \
+    PASS(BEAUTY, "beauty", 3, LIGHT) \
+    PASS(BACKGROUND, "background", 3, LIGHT) \
+    PASS(AMBIENT, "ambient", 3, LIGHT) \
+    PASS(DIFFUSE, "diffuse", 3, LIGHT) \
+    PASS(SPECULAR, "specular", 3, LIGHT) \
+    PASS(INDIRECT, "indirect", 3, LIGHT) \
+    PASS(MIRROR, "mirror", 3, LIGHT) \
+    PASS(TRANSMISSION, "transmission", 3, LIGHT) \
+    PASS(DEPTH, "depth", 1, DEPTH) \
+    PASS(NORMAL, "normal", 3, NORMAL) \
+    PASS(OBJECT_ID, "object_id", 1, OBJECT) \
+    PASS(ALPHA, "alpha", 1, SHARE) \
+    PASS(OUTLINE, "outline", 1, SHARE) \
+    PASS(REFINED, "refined", 1, SHARE) \
+    PASS(ALBEDO, "albedo", 3, LIGHT)
+
 /// Returns "beauty", "background", ...; NULL if out of range.
 const char *glint_pass_name(glint_pass pass);
 /// Returns the pass of that name; GLINT_PASS_COUNT if there is none.

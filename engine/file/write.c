@@ -269,13 +269,6 @@ static void find_steepest(picture *p)
             p->steepest = fabs(p->plane[c][i]) > p->steepest ? fabs(p->plane[c][i]) : p->steepest;
 }
 
-static bool is_color(glint_pass pass)
-{
-    return (pass < GLINT_PASS_DERIVATIVE || pass >= GLINT_PASS_LIGHT) && pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL &&
-           pass != GLINT_PASS_OBJECT_ID && pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE &&
-           pass != GLINT_PASS_REFINED;
-}
-
 static glint_status fail_not_stored(const glint_image *image, glint_pass pass, glint_error *error)
 {
     if (pass == GLINT_PASS_BEAUTY && image->codes)
@@ -357,30 +350,31 @@ static glint_status open_plain_rows(const glint_image *image, const glint_write_
     *p = (picture) { .image = image, .plane = glint_image_planes(image, desc->pass), .tone = desc->tone };
     *source = (glint_png_source) { .width = image->width, .height = image->height, .tone = desc->tone, .user = p };
     source->alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
-    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT)))
+    const glint_pass_look look = glint_look_of(desc->pass);
+    if (desc->colormap && (look == GLINT_LOOK_DEPTH || look == GLINT_LOOK_DERIVATIVE))
         p->map = glint_colormap_table((glint_colormap)(desc->colormap - 1));
     memcpy(p->range, desc->range, sizeof p->range);
-    if (!is_color(desc->pass))
+    if (look != GLINT_LOOK_LIGHT)
         source->tone.transfer = p->map ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR;
     if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
         source->row = row_of_codes;
         source->stamp = image->row_stamp;
     } else if (!p->plane[0]) {
         return fail_not_stored(image, desc->pass, error);
-    } else if (is_color(desc->pass)) {
+    } else if (look == GLINT_LOOK_LIGHT) {
         status = glint_tone_table_shared(&desc->tone, &p->table, error);
         p->gain = glint_tone_gain(&desc->tone);
         source->row = source->alpha ? row_of_covered : row_of_color;
-    } else if (desc->pass == GLINT_PASS_DEPTH) {
+    } else if (look == GLINT_LOOK_DEPTH) {
         find_nearest(p);
         source->row = row_of_depth;
-    } else if (desc->pass >= GLINT_PASS_DERIVATIVE) {
+    } else if (look == GLINT_LOOK_DERIVATIVE) {
         find_steepest(p);
         source->row = row_of_slopes;
-    } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE || desc->pass == GLINT_PASS_REFINED) {
+    } else if (look == GLINT_LOOK_SHARE) {
         source->row = row_of_shares;
     } else {
-        source->row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
+        source->row = look == GLINT_LOOK_NORMAL ? row_of_normals : row_of_ids;
     }
     if (desc->pass == GLINT_PASS_BEAUTY && image->outline) {
         p->under = source->row;

@@ -44,8 +44,8 @@ glint_status glint_image_range(const glint_image *image, glint_pass pass, double
     GLINT_REFUSE_NULL(image, error);
     GLINT_REFUSE_NULL(range, error);
     float *const *plane = glint_image_planes(image, pass);
-    const bool slopes = pass >= GLINT_PASS_DERIVATIVE && pass < GLINT_PASS_LIGHT;
-    if ((pass != GLINT_PASS_DEPTH && !slopes) || !plane[0])
+    const bool slopes = glint_look_of(pass) == GLINT_LOOK_DERIVATIVE;
+    if ((glint_look_of(pass) != GLINT_LOOK_DEPTH && !slopes) || !plane[0])
         return glint_fail(error, GLINT_ERR_INVALID, "pass: depth or a derivative that the image has expected");
     const size_t count = (size_t)image->width * (size_t)image->height;
     for (int c = 0; c < glint_pass_channels(pass); c++)

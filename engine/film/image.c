@@ -8,19 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define ROW(id, name, channels, look) [GLINT_PASS_##id] = { name, channels, GLINT_LOOK_##look },
 static const struct {
     const char *name;
     int channels;
-} pass_table[GLINT_PASS_COUNT] = {
-    [GLINT_PASS_BEAUTY] = { "beauty", 3 },       [GLINT_PASS_BACKGROUND] = { "background", 3 },
-    [GLINT_PASS_AMBIENT] = { "ambient", 3 },     [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
-    [GLINT_PASS_SPECULAR] = { "specular", 3 },   [GLINT_PASS_INDIRECT] = { "indirect", 3 },
-    [GLINT_PASS_MIRROR] = { "mirror", 3 },       [GLINT_PASS_TRANSMISSION] = { "transmission", 3 },
-    [GLINT_PASS_DEPTH] = { "depth", 1 },         [GLINT_PASS_NORMAL] = { "normal", 3 },
-    [GLINT_PASS_OBJECT_ID] = { "object_id", 1 }, [GLINT_PASS_ALPHA] = { "alpha", 1 },
-    [GLINT_PASS_OUTLINE] = { "outline", 1 },     [GLINT_PASS_REFINED] = { "refined", 1 },
-    [GLINT_PASS_ALBEDO] = { "albedo", 3 },
-};
+    glint_pass_look look;
+} pass_table[GLINT_PASS_COUNT] = { GLINT_PASSES(ROW) };
 
 static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }
 
@@ -38,6 +31,13 @@ float *const *glint_image_planes(const glint_image *image, glint_pass pass)
 }
 
 const char *glint_pass_name(glint_pass pass) { return is_pass(pass) ? pass_table[pass].name : NULL; }
+
+glint_pass_look glint_look_of(glint_pass pass)
+{
+    if (is_pass(pass))
+        return pass_table[pass].look;
+    return pass < GLINT_PASS_LIGHT ? GLINT_LOOK_DERIVATIVE : GLINT_LOOK_LIGHT;
+}
 
 glint_pass glint_pass_from_name(const char *name)
 {

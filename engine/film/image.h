@@ -60,6 +60,17 @@ static inline size_t glint_image_stamps(const glint_image *image)
 /// pass.
 const char *glint_plane_name(const glint_image *image, glint_pass pass, char buffer[GLINT_PLANE_NAME_SIZE]);
 
+/// How a picture shows a pass, see GLINT_PASSES.
+typedef enum glint_pass_look {
+    GLINT_LOOK_LIGHT,
+    GLINT_LOOK_SHARE,
+    GLINT_LOOK_DEPTH,
+    GLINT_LOOK_NORMAL,
+    GLINT_LOOK_OBJECT,
+    GLINT_LOOK_DERIVATIVE
+} glint_pass_look;
+glint_pass_look glint_look_of(glint_pass pass);
+
 /// Returns the planes of a pass, a derivative or a light pass; NULL for planes that are not stored.
 float *const *glint_image_planes(const glint_image *image, glint_pass pass);
 
