@@ -327,7 +327,9 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->tints)
         materials(e, "tinted shadow", transmits_light);
-    one(e, plan->depth_cue.on, "depth cue", "scene.depth_cue");
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        one(e, plan->own[id] && glint_stage_table[id]->effect, glint_stage_table[id]->effect, "%s",
+            glint_stage_table[id]->caller);
     veil(e);
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);

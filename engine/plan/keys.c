@@ -231,8 +231,10 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
     plan->setting_key = add_inputs(
         plan, GLINT_READS(VIEW) | GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS),
         none);
-    plan->output_key = add_inputs(
-        plan, GLINT_READS_OWN(DEPTH_CUE) | GLINT_READS_OWN(DERIVATIVE) | GLINT_READS(PASSES) | GLINT_READS(TONE), none);
+    uint64_t output = GLINT_READS_OWN(DERIVATIVE) | GLINT_READS(PASSES) | GLINT_READS(TONE);
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        output |= (uint64_t)glint_stage_table[id]->scales << (GLINT_PART_OWN + id);
+    plan->output_key = add_inputs(plan, output, none);
     return GLINT_OK;
 }
 

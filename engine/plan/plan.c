@@ -130,7 +130,6 @@ static void choose_stages(glint_plan *plan)
 {
     plan->tints = glint_plan_is_lit(plan) && (plan->transmits || plan->clears) && plan->shadow_count > 0;
     plan->dims = plan->tints && plan->absorbs;
-    plan->depth_cue.on = plan->depth_cue.on && (plan->geometry->table.prim_count > 0 || plan->visible_light_count > 0);
     plan->accumulate = plan->light_groups || plan->desc.samples > 1 || plan->tints || plan->light_count > GLINT_LIGHT_CHUNK;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         plan->runs[id] = glint_stage_table[id]->called(plan);
@@ -139,6 +138,16 @@ static void choose_stages(glint_plan *plan)
     plan->local = is_local(plan);
     plan->together = shades_together(plan);
     list_steps(plan);
+}
+
+/// Lets each stage store what only it reads.
+static glint_status prepare_stages(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    for (int id = 0; id < GLINT_STAGE_COUNT && !status; id++)
+        if (glint_stage_table[id]->prepare)
+            status = glint_stage_table[id]->prepare(plan, scene, error);
+    return status;
 }
 
 /// Fills the plan. times: the plans of the shutter's times, whose lights the frame uses; NULL: its own lights. desc:
@@ -170,6 +179,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint
         status = glint_plan_find_indirect(plan, &scene->desc, error);
     if (!status)
         status = glint_plan_bounce(plan, error);
+    if (!status)
+        status = prepare_stages(plan, &scene->desc, error);
     if (status)
         return status;
     choose_stages(plan);
@@ -323,6 +334,8 @@ void glint_plan_destroy(glint_plan *plan)
     glint_light_groups_free(plan->light_groups);
     free(plan->indirect.rest);
     free(plan->indirect.light_rows);
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        free(plan->own[id]);
     free(plan->material_keys);
     free(plan->matte_keys);
     free(plan->lines);

@@ -117,6 +117,8 @@ typedef struct glint_plan_indirect {
 #define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if mirror + transmission of a material exceed 1
 /// number of surfaces in a chain at which both the reflected and the refracted ray are followed
 #define GLINT_BOUNCE_SPLITS 16
+/// Upper bound of the plan's light and colours. Such values are white in any picture, and their products stay finite.
+#define GLINT_STRENGTH_MAX 1e150
 /// Limit, in linear light per sample, for the total of weak rays that are not followed
 #define GLINT_BOUNCE_LOSS 0x1p-20
 
@@ -152,10 +154,6 @@ struct glint_plan {
     glint_plan_environment *environment; ///< NULL: the background is plain
     struct {
         bool on;
-        double color[3], near, far; ///< see glint_scene_desc
-    } depth_cue;
-    struct {
-        bool on;
         uint32_t material; ///< the innermost medium
         double absorption[3];
     } veil; ///< the eye is inside an absorbing medium
@@ -180,6 +178,7 @@ struct glint_plan {
     glint_overlays *overlays; ///< overlays, drawn over the finished picture; NULL: none
 
     bool runs[GLINT_STAGE_COUNT];
+    void *own[GLINT_STAGE_COUNT]; ///< what only this stage reads, see glint_stage; owned
     uint32_t steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages that have a step then, one bit each
     uint32_t limits, admits; ///< the stages that have the functions `limit` and `admit`, one bit each
     bool reads_normals; ///< whether some stage is likely to read normals
@@ -223,6 +222,13 @@ static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t 
 static inline bool glint_plan_is_lit(const glint_plan *plan)
 {
     return plan->geometry->table.prim_count > 0 && plan->light_count > 0;
+}
+
+/// Computes a colour times a factor, at most GLINT_STRENGTH_MAX. 0 times infinity is 0.
+static inline void glint_plan_bounded(double out[3], const double color[3], double factor)
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = color[c] == 0 ? 0 : fmin(color[c] * factor, GLINT_STRENGTH_MAX);
 }
 
 /// Returns whether some material turns normals.

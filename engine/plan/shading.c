@@ -11,15 +11,8 @@
 #define SAMPLES_MAX 0x1p27 ///< most samples of all lights together, over all sets
 
 /// Larger strengths are white in any picture. Products of two strengths below this limit stay finite.
-#define STRENGTH_MAX 1e150
 
 static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
-
-static void bounded(double out[3], const double color[3], double factor)
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = color[c] == 0 ? 0 : fmin(color[c] * factor, STRENGTH_MAX);
-}
 
 /// Sets up the highlight of Phong or Blinn-Phong.
 static void power_init(glint_shade_material *out, const glint_material_desc *desc)
@@ -34,7 +27,7 @@ static void power_init(glint_shade_material *out, const glint_material_desc *des
     out->shininess = (float)s;
     // exp2's argument is half the logarithm of x times the shininess; the margin of 1e-4 is far above all rounding
     out->least = (float)(glint_pow(2, 2 * GLINT_EXP2_LOWEST / s) * (1 - 1e-4));
-    bounded(out->specular, desc->specular, norm);
+    glint_plan_bounded(out->specular, desc->specular, norm);
 }
 
 static void facets_init(glint_shade_material *out, const glint_material_desc *desc)
@@ -43,7 +36,7 @@ static void facets_init(glint_shade_material *out, const glint_material_desc *de
     out->lobe = desc->distribution == GLINT_DISTRIBUTION_BECKMANN ? GLINT_LOBE_BECKMANN : GLINT_LOBE_GGX;
     out->alpha = (float)fmax(desc->roughness * desc->roughness, 1e-18);
     for (int c = 0; c < 3; c++) {
-        const double ks = fmin(desc->specular[c], STRENGTH_MAX);
+        const double ks = fmin(desc->specular[c], GLINT_STRENGTH_MAX);
         out->specular[c] = ks * desc->f0[c];
         out->grazing[c] = ks * (1 - desc->f0[c]);
     }
@@ -82,13 +75,13 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
     *out = (glint_shade_material) { 0 };
     take_planes(out, &d, !desc->has_ambient && !desc->program.ambient);
     for (int c = 0; c < 3 && !(out->planes & (GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT)); c++)
-        out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], STRENGTH_MAX);
+        out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], GLINT_STRENGTH_MAX);
     if (d.program.shader) {
         out->planes &= GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT;
         out->planes |= GLINT_PLANE_SHADED;
         return;
     }
-    bounded(out->diffuse, d.diffuse, 1);
+    glint_plan_bounded(out->diffuse, d.diffuse, 1);
     if (!glint_material_is_shiny(&d)) {
         out->planes &= ~(uint32_t)GLINT_PLANE_SPECULAR;
         return;
@@ -206,8 +199,8 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
         out->scale = size > 0 ? power_of_two_scale(size) : 1;
         strength = desc->radiance * (glint_light_sample_area(desc) / desc->samples) * (out->scale * out->scale);
     }
-    bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, strength);
-    bounded(out->specular, desc->has_specular ? desc->specular : desc->color, strength);
+    glint_plan_bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, strength);
+    glint_plan_bounded(out->specular, desc->has_specular ? desc->specular : desc->color, strength);
 }
 
 /// Computes Ia: the ambient light of the scene and of every light.
@@ -219,14 +212,9 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
         for (int c = 0; c < 3; c++)
             plan->ambient[c] += desc->ambient[c] * desc->intensity;
     }
-    bounded(plan->ambient, plan->ambient, 1);
+    glint_plan_bounded(plan->ambient, plan->ambient, 1);
     if (!scene->desc.background_program)
-        bounded(plan->background, scene->desc.background, 1);
-    plan->depth_cue.on = scene->desc.has_depth_cue;
-    plan->depth_cue.near = scene->desc.depth_cue_near;
-    plan->depth_cue.far = scene->desc.depth_cue_far;
-    bounded(plan->depth_cue.color,
-            scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
+        glint_plan_bounded(plan->background, scene->desc.background, 1);
 }
 
 /// Fills the materials, and determines the kind of highlight of each.

@@ -7,6 +7,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/effects/list.h"
+#include "engine/glint.h"
 
 #define GLINT_STAGE_ID(id, name) GLINT_STAGE_##id,
 typedef enum glint_stage_id { GLINT_STAGES(GLINT_STAGE_ID) GLINT_STAGE_COUNT } glint_stage_id;
@@ -73,6 +74,10 @@ typedef struct glint_stage {
     /// name in `glint explain`, --json and the statistics of a frame; NULL: part of another stage, not listed
     const char *name;
     const char *doc; ///< the result in a few words, for `glint explain`
+    const char *effect, *caller; ///< the effect and the option that asks for it, for `glint explain`; NULL: not listed
+    /// Stores what the stage alone reads, in plan->own[id], one block that the plan frees. Called when all other tables
+    /// of the plan are filled. NULL: the stage reads only these tables. `effect` is listed if there is such a block.
+    glint_status (*prepare)(struct glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
     /// Returns whether the frame needs the stage; the plan's tables are filled
     bool (*called)(const struct glint_plan *plan);
     uint64_t reads; ///< inputs of the stage, a set made by GLINT_READS and GLINT_READS_OWN; the results of the stages
@@ -83,6 +88,7 @@ typedef struct glint_stage {
     bool per_light; ///< whether the stage runs once for each light
     bool walks; ///< whether the stage traverses the BVH
     bool sums; ///< whether the stage adds light to the sums of a sample
+    bool scales; ///< whether the stage changes the finished light of samples, even of samples that hit nothing
     bool normals; ///< whether the stage is likely to read the normals of points
     bool remote; ///< whether the stage adds light or slopes of light that do not come from the one call of `shade`
         ///< per sample

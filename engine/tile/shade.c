@@ -100,11 +100,11 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
 static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    static const glint_stage_id adding[] = { GLINT_STAGE_VISIBLE_LIGHT, GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_SHADER,
-                                             GLINT_STAGE_ENVIRONMENT };
-    for (size_t i = 0; i < sizeof adding / sizeof *adding; i++)
-        if (plan->runs[adding[i]])
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (plan->runs[id] && glint_stage_table[id]->scales)
             return false;
+    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] || plan->runs[GLINT_STAGE_ENVIRONMENT] || plan->runs[GLINT_STAGE_SHADER])
+        return false;
     if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives ||
         plan->light_groups)
         return false;

@@ -375,10 +375,6 @@ void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, ui
 /// Returns whether any visible material needs secondary rays. The materials must be known.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
-/// effects/depth_cue/depth_cue.c: light that fades with the distance from the eye.
-/// Returns the distance of the hit of pixel i; infinite without a hit.
-double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i);
-
 /// effects/visible_light/visible_light.c: visible lights.
 /// Clears the lights seen. Returns false if no ray of the tile can see a light.
 bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame);

@@ -5,14 +5,13 @@
 #include "engine/plan/plan.h"
 
 /// Larger strengths are white in any film. The product of two strengths below this limit is finite.
-#define STRENGTH_MAX 1e150
 
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
 
 static void bounded(double out[3], const double color[3])
 {
     for (int c = 0; c < 3; c++)
-        out[c] = fmin(color[c], STRENGTH_MAX);
+        out[c] = fmin(color[c], GLINT_STRENGTH_MAX);
 }
 
 /// Returns the mirror of a material: if it was never set, it follows `fresnel`.

@@ -4,7 +4,9 @@
 ///
 /// Everything is computed in double, by the same code for every instruction set.
 #include "engine/base/alloc.h"
+#include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/effects/depth_cue/depth_cue.h"
 #include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
@@ -36,10 +38,10 @@ double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, u
 }
 
 /// Returns the share of the colour at a distance. The background does not fade.
-static double share_of(const glint_plan *plan, double distance)
+static double share_of(const glint_plan_depth_cue *cue, double distance)
 {
-    const double x = (distance - plan->depth_cue.near) / (plan->depth_cue.far - plan->depth_cue.near);
-    return plan->depth_cue.on && distance < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
+    const double x = cue ? (distance - cue->near) / (cue->far - cue->near) : 0;
+    return distance < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
 }
 
 /// Computes the share of the cue and the transmittance from the first hits of the current sample, before any other
@@ -53,7 +55,7 @@ static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     struct glint_depth_cue *depth_cue = own_of(tile);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double distance = any ? glint_tile_hit_distance(tile, plan, i) : HUGE_VAL;
-        depth_cue->share[i] = share_of(plan, distance);
+        depth_cue->share[i] = share_of(glint_plan_depth_cue_of(plan), distance);
         for (int c = 0; c < 3; c++)
             depth_cue->transmittance[c][i] =
                 (1 - depth_cue->share[i]) * glint_plan_transmittance(plan->veil.absorption[c], distance);
@@ -65,12 +67,13 @@ static void fade(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
 {
     (void)walk;
     const glint_plan *plan = frame->plan;
+    const glint_plan_depth_cue *cue = glint_plan_depth_cue_of(plan);
     const double *share = own_of(tile)->share;
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3 && glint_plan_has_term(plan, (glint_term)k); c++) {
             double *sum = tile->film.sum[k][c], *total = own_of(tile)->total[k][c];
             const double *transmittance = own_of(tile)->transmittance[c];
-            const double color = k == GLINT_TERM_BACKGROUND ? plan->depth_cue.color[c] : 0;
+            const double color = cue && k == GLINT_TERM_BACKGROUND ? cue->color[c] : 0;
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
                 const double before = tile->sample == 0 ? 0 : total[i];
                 total[i] = before + ((transmittance[i] > 0 ? sum[i] * transmittance[i] : 0) + share[i] * color);
@@ -93,27 +96,43 @@ static void take_faded(glint_tile *tile, const glint_tile_frame *frame, glint_sa
 
 static glint_key own_key(const glint_plan *plan, glint_key key)
 {
-    if (plan->depth_cue.on) {
-        GLINT_KEY_ADD(key, plan->depth_cue.color);
-        GLINT_KEY_ADD(key, plan->depth_cue.near);
-        GLINT_KEY_ADD(key, plan->depth_cue.far);
-    }
+    const glint_plan_depth_cue *cue = glint_plan_depth_cue_of(plan);
+    if (cue)
+        GLINT_KEY_ADD(key, *cue);
     if (plan->veil.on)
         GLINT_KEY_ADD(key, plan->veil.absorption);
     return key;
 }
 
-static bool called(const glint_plan *plan) { return plan->depth_cue.on || plan->veil.on; }
+static glint_status prepare(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
+{
+    if (!scene->has_depth_cue || (plan->geometry->table.prim_count == 0 && plan->visible_light_count == 0))
+        return GLINT_OK;
+    glint_plan_depth_cue *cue = malloc(sizeof *cue);
+    if (!cue)
+        return glint_fail_nomem(error);
+    glint_plan_bounded(cue->color, scene->has_depth_cue_color ? scene->depth_cue_color : scene->background, 1);
+    cue->near = scene->depth_cue_near;
+    cue->far = scene->depth_cue_far;
+    plan->own[GLINT_STAGE_DEPTH_CUE] = cue;
+    return GLINT_OK;
+}
+
+static bool called(const glint_plan *plan) { return glint_plan_depth_cue_of(plan) || plan->veil.on; }
 
 const glint_stage glint_stage_depth_cue = {
     .name = "depth_cue",
     .doc = "light faded by the distance from the eye",
+    .effect = "depth cue",
+    .caller = "scene.depth_cue",
+    .prepare = prepare,
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(DEPTH_CUE),
     .walks = true,
     .sums = true,
     .remote = true,
+    .scales = true,
     .step = { [GLINT_AT_SIGHT] = find, [GLINT_AT_SUMMED] = fade, [GLINT_AT_DONE] = take_faded },
     .create = create,
     .destroy = free,

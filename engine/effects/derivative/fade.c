@@ -1,6 +1,7 @@
 /// Derivatives of light that fades with the distance from the eye; see effects/depth_cue/depth_cue.c.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
+#include "engine/effects/depth_cue/depth_cue.h"
 #include "engine/effects/derivative/work.h"
 
 #include <stdlib.h>
@@ -34,9 +35,10 @@ static glint_dual distance_of(const glint_tile *tile, const glint_tile_frame *fr
 
 static glint_dual share_of(const glint_plan *plan, const glint_plan_derivative *d, glint_dual distance)
 {
-    const glint_dual near = dual(plan->depth_cue.near, d->fade.near), far = dual(plan->depth_cue.far, d->fade.far);
-    if (!plan->depth_cue.on || !(distance.value < HUGE_VAL))
+    const glint_plan_depth_cue *cue = glint_plan_depth_cue_of(plan);
+    if (!cue || !(distance.value < HUGE_VAL))
         return dual(0, 0);
+    const glint_dual near = dual(cue->near, d->fade.near), far = dual(cue->far, d->fade.far);
     const glint_dual x = dual_div(dual_sub(distance, near), dual_sub(far, near));
     return x.value >= 1 ? dual(1, 0) : x.value > 0 ? x : dual(0, 0);
 }
@@ -63,6 +65,7 @@ void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame)
     glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan *plan = frame->plan;
     const glint_plan_derivatives *all = plan->derivatives;
+    const glint_plan_depth_cue *cue = glint_plan_depth_cue_of(plan);
     const bool weighs = glint_derivatives_weigh(all);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double distance = glint_tile_hit_distance(tile, plan, i);
@@ -71,7 +74,7 @@ void glint_derive_fade(glint_tile *tile, const glint_tile_frame *frame)
             const fade f = find_fade(plan, d, distance_of(tile, frame, k, i, distance));
             for (int c = 0; c < 3; c++) {
                 const double before = tile->sample == 0 ? 0 : work->faded[k][c][i], light = weighs ? work->light[c][i] : 0;
-                const double color = f.share.slope * plan->depth_cue.color[c] + f.share.value * d->fade.color[c];
+                const double color = f.share.slope * (cue ? cue->color[c] : 0) + f.share.value * d->fade.color[c];
                 const double own = f.transmittance[c].value > 0 ? work->sum[k][c][i] * f.transmittance[c].value : 0;
                 work->faded[k][c][i] = before + ((own + light * f.transmittance[c].slope) + color);
                 work->sum[k][c][i] = 0;

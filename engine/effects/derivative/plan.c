@@ -289,10 +289,9 @@ static void total_ambient(const glint_scene *scene, const glint_scene_slopes *sl
 }
 
 /// Fills the slopes of a depth cue, whose colour may be the background's.
-static void fill_fade(const glint_plan *plan, const glint_scene_desc *desc, const glint_scene_desc *slope,
-                      glint_plan_derivative *out)
+static void fill_fade(const glint_scene_desc *desc, const glint_scene_desc *slope, glint_plan_derivative *out)
 {
-    if (plan->depth_cue.on) {
+    if (desc->has_depth_cue) {
         vec_copy(out->fade.color, desc->has_depth_cue_color ? slope->depth_cue_color : slope->background);
         out->fade.near = slope->depth_cue_near;
         out->fade.far = slope->depth_cue_far;
@@ -335,7 +334,7 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
     glint_derivative_fill_view(&out->view, plan, glint_camera_get(scene->desc.camera), &slopes->camera);
     out->bends = out->bends || out->view.moves;
     out->moves = out->moves || out->bends;
-    fill_fade(plan, &scene->desc, &slopes->scene, out);
+    fill_fade(&scene->desc, &slopes->scene, out);
     for (int c = 0; c < 3; c++) {
         out->background[c] = scene->desc.background_program ? 0 : slopes->scene.background[c];
         out->everywhere = out->everywhere || out->background[c] != 0;

@@ -24,7 +24,6 @@
 
 #define GOLDEN 0x1.9e3779b97f4a8p-1 ///< golden ratio: fractional parts of its multiples fill 0 .. 1 evenly
     ///< on
-#define STRENGTH_MAX 1e150
 
 typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTED, EVENT_STRAIGHT, EVENT_COUNT } event;
 
@@ -74,8 +73,8 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
         *light = plan->lights[first + (uint32_t)(part * count)];
         light->joined = false;
         for (int c = 0; c < 3; c++) {
-            light->diffuse[c] = fmin(light->diffuse[c] * count, STRENGTH_MAX);
-            light->specular[c] = fmin(light->specular[c] * count, STRENGTH_MAX);
+            light->diffuse[c] = fmin(light->diffuse[c] * count, GLINT_STRENGTH_MAX);
+            light->specular[c] = fmin(light->specular[c] * count, GLINT_STRENGTH_MAX);
         }
     }
 }

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 /// The limit for numbers of materials; see shading.c.
-#define STRENGTH_MAX 1e150
 
 // ---- A material's programs ----
 
@@ -114,7 +113,7 @@ static void add_material(const glint_plan *plan, size_t i, bool indirect)
     glint_material_desc_resolve(&pattern->desc);
     pattern->ambient_follows = !desc->has_ambient && !desc->program.ambient;
     for (int c = 0; c < 3; c++)
-        pattern->desc.diffuse[c] = desc->program.diffuse ? 1 : fmin(desc->diffuse[c], STRENGTH_MAX);
+        pattern->desc.diffuse[c] = desc->program.diffuse ? 1 : fmin(desc->diffuse[c], GLINT_STRENGTH_MAX);
     for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
         const glint_program *program = program_of(plan, i, field);
         if (!program || !is_read(desc, field))

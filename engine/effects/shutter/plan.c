@@ -30,10 +30,16 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
 
 static bool vec_equal(const double a[3], const double b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
-static bool equal_depth_cue(const glint_plan *a, const glint_plan *b)
+/// Returns whether the data that only one stage reads is equal, for all stages that have such data.
+static bool equal_own_data(const glint_plan *a, const glint_plan *b)
 {
-    return a->depth_cue.on == b->depth_cue.on && vec_equal(a->depth_cue.color, b->depth_cue.color) &&
-           a->depth_cue.near == b->depth_cue.near && a->depth_cue.far == b->depth_cue.far;
+    const glint_key none = { 0 };
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        const glint_stage *stage = glint_stage_table[id];
+        if (!a->own[id] != !b->own[id] || (a->own[id] && !glint_key_equal(stage->own(a, none), stage->own(b, none))))
+            return false;
+    }
+    return true;
 }
 
 /// Returns whether two plans are equal except for lights and for the conversion to pixel values.
@@ -44,7 +50,7 @@ static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
         if (!glint_key_equal(a->keys[read[i]], b->keys[read[i]]))
             return false;
     return glint_key_equal(a->all_materials_key, b->all_materials_key) &&
-           glint_key_equal(a->background_key, b->background_key) && equal_depth_cue(a, b) &&
+           glint_key_equal(a->background_key, b->background_key) && equal_own_data(a, b) &&
            vec_equal(a->ambient, b->ambient) && glint_light_groups_equal(a, b);
 }
 

@@ -6,7 +6,6 @@
 #include "engine/effects/light_groups/plan.h"
 
 #define PI 0x1.921fb54442d18p+1
-#define STRENGTH_MAX 1e150 ///< larger strengths are white in any film; products below it stay finite
 
 bool glint_light_shows(const glint_light_desc *desc, double shown[3])
 {
@@ -19,7 +18,7 @@ bool glint_light_shows(const glint_light_desc *desc, double shown[3])
                               ? PI * desc->radiance
                               : desc->intensity / (a[0] + (a[1] * distance + a[2] * (distance * distance)));
     for (int c = 0; c < 3; c++) {
-        shown[c] = desc->color[c] == 0 ? 0 : fmin(desc->color[c] * factor, STRENGTH_MAX);
+        shown[c] = desc->color[c] == 0 ? 0 : fmin(desc->color[c] * factor, GLINT_STRENGTH_MAX);
         any = any || shown[c] > 0;
     }
     return any;
