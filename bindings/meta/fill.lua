@@ -35,9 +35,14 @@ local function annotation(row)
   return ("---@field %s%s %s  %s"):format(row.name, row.required and "" or "?", type_of(row), text)
 end
 
--- Returns "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)".
-local function item(row)
+-- Returns "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)", "indirect {samples (16), bounces (2)}".
+local item
+function item(row)
   local names, value = {}, default(row)
+  if row.parts then
+    for i, part in ipairs(row.parts) do names[i] = item(part) end
+    return ("%s {%s}"):format(row.name, table.concat(names, ", "))
+  end
   for name in row.type:gmatch '"([^"]+)"' do names[#names + 1] = name end
   local note = #names > 0 and table.concat(names, ", ") or row.follows and "as " .. row.follows
     or value and value ~= "" and value ~= "false" and value

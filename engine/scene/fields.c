@@ -29,6 +29,16 @@ void glint_fields_reset(const glint_object_field *fields, void *desc)
     }
 }
 
+/// Checks a number against the range of its row. Both ends 0 and no text: any number.
+static glint_status check_number(const glint_object_field *f, double v, glint_error *error)
+{
+    char range[64];
+    if (!f->expected && f->low == f->high)
+        return GLINT_OK;
+    snprintf(range, sizeof range, "number %.15g .. %.15g", f->low, f->high);
+    return glint_check_range(f->name, v, f->low, f->high, f->expected ? f->expected : range, error);
+}
+
 static glint_status check_color(const glint_object_field *f, const double v[3], glint_error *error)
 {
     glint_status status = glint_check_color(f->name, v, error);
@@ -78,7 +88,7 @@ static glint_status check(const glint_object_field *f, const char *desc, glint_e
     memcpy(v, at, (size_t)glint_field_numbers(f) * sizeof *v);
     switch (f->type) {
     case GLINT_TYPE_NUMBER:
-        return f->expected ? glint_check_range(f->name, *v, f->low, f->high, f->expected, error) : GLINT_OK;
+        return check_number(f, *v, error);
     case GLINT_TYPE_WHOLE:
         if (f->expected && !(*v >= f->low && *v <= f->high && *v == floor(*v)))
             return glint_fail(error, GLINT_ERR_INVALID, "%s: %s expected, got %.15g", f->name, f->expected, *v);

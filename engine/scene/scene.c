@@ -16,7 +16,7 @@ static const char *const cameras[] = { "glint.camera", NULL };
 
 // clang-format off
 static const glint_object_field depth_cue_parts[] = {
-    { GLINT_NAMED("color", depth_cue_color, COLOR), GIVEN(has_depth_cue_color) },
+    { GLINT_NAMED("color", depth_cue_color, COLOR), GIVEN(has_depth_cue_color), .follows = "background" },
     { GLINT_NAMED("near", depth_cue_near, NUMBER), .low = 0, .high = DBL_MAX, .expected = "finite number >= 0" },
     { GLINT_NAMED("far", depth_cue_far, NUMBER), .required = true },
     { .name = NULL },
