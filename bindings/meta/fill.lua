@@ -35,7 +35,7 @@ local function annotation(row)
   return ("---@field %s%s %s  %s"):format(row.name, row.required and "" or "?", type_of(row), text)
 end
 
--- Returns "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)", "indirect {samples (16), bounces (2)}".
+-- Returns "shininess (32)", "model (phong, blinn_phong)", "ambient (as diffuse)", "indirect {samples (16), ...}".
 local item
 function item(row)
   local names, value = {}, default(row)
