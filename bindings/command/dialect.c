@@ -69,7 +69,7 @@ static const struct carried {
 
 typedef struct code_buffer {
     luaL_Buffer buffer;
-    bool begun; // luaL_buffinit changes the stack; lua_dump needs the function on top until its first call
+    bool begun; // luaL_buffinit was called: at the first write, as lua_dump needs the function on top until then
 } code_buffer;
 
 static int add_code(lua_State *L, const void *bytes, size_t size, void *context)

@@ -66,7 +66,7 @@ static bool read_colorbar(const char *text, glint_overlay_desc *bar, char messag
     return true;
 }
 
-// Turns "AXIS=TEXT,..." into lines, owned by the caller; a text without an axis is of every axis. NULL: out of memory.
+// Turns "AXIS=TEXT,..." into lines, owned by the caller. A text without an axis is for all axes. NULL: out of memory.
 static char *make_lines(const char *text, bool has_axis)
 {
     char *lines = malloc(strlen(text) + 2);

@@ -384,7 +384,7 @@ static bool choose(points *p)
 }
 
 // Returns how many states may be open. An eighth of the reuse memory must hold twice the memory of each script with its
-// scene, measured as the growth of the process when the first was opened.
+// scene, measured as the growth of the process when the first state was opened.
 static int most_together(const points *p, size_t first_bytes)
 {
     const size_t count = glintL_run_reuse_bytes(p->run) / 8 / (2 * first_bytes + 1);

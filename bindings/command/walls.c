@@ -93,7 +93,7 @@ typedef struct rights {
 // Returns all rights that the kernel's Landlock can restrict. *size: the size of the structure that it knows.
 static rights all_rights(long version, size_t *size)
 {
-    static const int file_rights[] = { 13, 14, 15, 15 }; // versions 1 .. 4; from 5 on also ioctl of devices
+    static const int file_rights[] = { 13, 14, 15, 15 }; // number of rights in versions 1 .. 4; version 5 adds ioctl of devices
     rights all = { .files = (UINT64_C(1) << (version < 5 ? file_rights[version - 1] : 16)) - 1 };
     all.network = version >= 4 ? 3 : 0; // TCP bind and connect
     all.scopes = version >= 6 ? 3 : 0; // abstract sockets, and signals to other processes

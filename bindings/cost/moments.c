@@ -9,16 +9,16 @@
 
 static const int COUNTS[] = { 1, 2, 4, 8, 16, 32 };
 
-// The recorded state of each object at one time: a description for shapes, a copy for the others. Both retain the
-// objects that they refer to.
+// The recorded state of each object at one time: the description of each shape, and owned copies (notes) of the other
+// objects. The objects themselves are borrowed. Descriptions and notes retain the objects that they refer to.
 typedef struct moment {
     int times, k;
-    glint_shape **shapes; // borrowed
+    glint_shape **shapes;
     glint_shape_desc *shape_descs; // their materials are retained
-    glint_light **lights, **light_notes; // borrowed; owned
-    glint_material **materials, **material_notes; // likewise
-    glint_camera *camera, *camera_note; // likewise
-    glint_scene *scene_note; // owned
+    glint_light **lights, **light_notes;
+    glint_material **materials, **material_notes;
+    glint_camera *camera, *camera_note;
+    glint_scene *scene_note;
     size_t shape_count, light_count, material_count;
 } moment;
 

@@ -17,8 +17,8 @@ static const glintL_variant *variant(const void *object)
 
 GLINTL_FUNCTIONS(camera);
 
-// Lets the last assignment decide between fov and fx. A camera that looks along a direction needs another one, or a
-// point.
+// Lets the last assignment decide between fov and fx. A camera that looks along a direction must be given another
+// direction, or a point to look at.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
     desc_type *d = desc;
@@ -63,7 +63,7 @@ static void begin(int kind, void *desc)
     *(desc_type *)desc = glint_camera_desc_default();
 }
 
-// Checks that the table gives the view, and only once.
+// Checks that the table sets the view, and in only one way: by a matrix, by `at`, or by `direction`.
 static void given(lua_State *L, const glintL_variant *variant, const void *desc)
 {
     static const char *const placed[] = { "eye", "at", "direction", "up" };

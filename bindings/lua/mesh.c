@@ -437,7 +437,8 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     return glint_mesh_load(path, &a->desc, shape, error);
 }
 
-// Raises the error in the file at OTHER: "FILE:LINE: what", as readers in Lua do. The traceback of the script follows.
+// Raises an error in the file whose path is at OTHER as "FILE:LINE: what", like the readers in Lua, and without the
+// script's position. The traceback of the script follows.
 static void check_loaded(lua_State *L, const glint_error *error, glint_status status)
 {
     const char *path = lua_tostring(L, OTHER);

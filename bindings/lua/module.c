@@ -19,7 +19,7 @@ static bool has_member(const void *context, const char *name)
     return found;
 }
 
-// Returns the nearest name. Tables have no order, so that among equals the first in the alphabet is chosen.
+// Returns the nearest name, and of equally near names the alphabetically first, because tables have no order.
 static const char *nearest_member(lua_State *L, const char *name)
 {
     const char *near = NULL;

@@ -58,7 +58,7 @@ static double slope(const track *k, uint32_t i, uint32_t c)
     return i == 0 ? first_rise / first_span : last_rise / last_span;
 }
 
-/// Returns component c between keys i and i + 1, at the share t of the interval.
+/// Returns component c between keys i and i + 1, at the fraction t of the interval.
 static double between(const track *k, uint32_t i, double t, uint32_t c)
 {
     const double a = key_value(k, i, c), b = key_value(k, i + 1, c);
@@ -164,7 +164,7 @@ static void read_value(lua_State *L, const char *path, const track *k, double *o
     }
 }
 
-/// Pushes time and value of key i, from the list at 1.
+/// Pushes the time and the value of key i of the list at 1.
 static void push_key(lua_State *L, uint32_t i, char *path, size_t path_size)
 {
     snprintf(path, path_size, "keys[%u]", i + 1);

@@ -26,8 +26,8 @@ static void release(void *object) { glint_scene_release(object); }
 
 // ---- Objects in and out ----
 
-// Retains the userdata at `value` as long as the scene at `index`, or releases it, under the address of its object.
-// Returns whether it was stored before.
+// Keeps the userdata at `value` alive as long as the scene at `index`, stored under the address of its object; nil
+// releases it. Returns whether a userdata was stored under this address before.
 static bool keep_object(lua_State *L, int index, const void *object, int value)
 {
     lua_getiuservalue(L, index, 1);
@@ -340,8 +340,8 @@ static int new_scene(lua_State *L)
     return 1;
 }
 
-// Makes the scene's field of this name as a value, and checks it: a read-only table, which a scene also accepts among
-// its objects.
+// glint.ambient_occlusion: checks the fields of a scene's ambient_occlusion, and returns them as a read-only table. A
+// scene also accepts this table among its objects.
 static int new_ambient_occlusion(lua_State *L)
 {
     desc_type desc = { .has_ambient_occlusion = true };

@@ -44,7 +44,7 @@ typedef struct glintL_operand {
 typedef struct glintL_choices {
     uint32_t count;
     uint64_t used[GLINTL_CHOICES_MAX / 64]; ///< a bit for each choice: its result was used
-    char place[96]; ///< position of the first unused choice: "scene.lua:12: "; "": no second call looked for it
+    char place[96]; ///< position of the first unused choice: "scene.lua:12: "; "": not known
 } glintL_choices;
 
 /// A running function: with symbols or, if builder is NULL, with the numbers of one point.
@@ -54,7 +54,7 @@ typedef struct glintL_trace {
     bool is_shader;
     bool has_power; ///< `^` was used with bits that may differ from C's pow
     glintL_choices choices;
-    glintL_choices *before; ///< from the function's previous call: choices unused there are false now; NULL: none is
+    glintL_choices *before; ///< choices of the previous call; those unused there are now false. NULL: no choice is
     uint64_t serial; ///< unique in its Lua state
     struct glintL_trace *outer; ///< the function that called this one, or NULL
     char place[96]; ///< position of the function: "scene.lua:12: "

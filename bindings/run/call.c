@@ -141,8 +141,8 @@ static int raise_failure(lua_State *L, glintL_run *run)
     return glintL_error(L, PATH "%s", run->interrupted ? "interrupted" : run->message);
 }
 
-// Gives the rendered image to the handle at `first`, or the plan of an existing file to the next one, and leaves that
-// handle on top. Does not raise.
+// Gives the rendered image to the handle at `first`. If the file exists, gives the plan to the handle at `first` + 1
+// instead. Leaves the handle that it filled on top. Does not raise.
 static glint_status fill_handle(lua_State *L, int first, const glint_scene *scene, glintL_work *work, bool open,
                                 glint_error *error)
 {

@@ -38,8 +38,8 @@ static void add_point(glint_overlay_desc *desc, const double point[3], unsigned 
 
 // ---- Lobes ----
 
-// Finds the normal of the surface at the lobe's point, on the side of the scene's camera, by a ray along the light from a
-// little above the point.
+// Finds the normal of the surface at the lobe's point, on the side of the scene's camera. Casts a ray from a little
+// above the point, away from the light.
 static void find_normal(lua_State *L, const glint_scene *scene, const double light[3], glint_overlay_desc *desc)
 {
     double origin[3], back[3] = { -light[0], -light[1], -light[2] };
@@ -110,8 +110,8 @@ static double angle_of(double cosine, double sine)
     return low;
 }
 
-// Computes a lobe from one side of the plane to the other. Its middle point is in the mirrored direction, next to which
-// the points are close together. The material is at index -1.
+// Computes the points of a lobe, from one side of the normal to the other. The middle point is in the mirrored
+// direction, and the points are densest there. The material is at index -1.
 static void find_lobe(lua_State *L, const glint_scene *scene, glint_overlay_desc *desc)
 {
     double light[3], across[3];
@@ -157,8 +157,8 @@ static void find_path(lua_State *L, const glint_scene *scene, glint_overlay_desc
 
 // ---- Frustums ----
 
-// Computes the edges of the view of a camera: from the eye, or for an orthographic camera from the plane of the eye, to
-// the corners of the picture, and the picture's sides.
+// Computes the edges of a camera's view: four lines to the corners of the picture, and the picture's outline. The lines
+// begin at the eye or, for an orthographic camera, in the plane of the eye, where the outline is drawn as well.
 static void find_frustum(const glint_camera_desc *camera, glint_overlay_desc *desc)
 {
     const double height = camera->h > 0 ? camera->h : TALL, width = camera->w > 0 ? camera->w : desc->aspect * height;

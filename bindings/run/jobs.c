@@ -72,7 +72,7 @@ int64_t glintL_jobs_total(lua_State *L, int index)
 
 // ---- The list ----
 
-// The frames to render: of the selected frames, those at positions from .. to.
+// The frames to render: the selected frames at positions from .. to.
 typedef struct part {
     int64_t from, to, position; // positions of the part; position: the last frame passed
 } part;
@@ -141,8 +141,8 @@ static bool run_job(glintL_walk *walk, lua_Integer i, part *p)
 
 // ---- Animations of one scene, such as one for each shininess ----
 
-// Frames that are planned and not yet rendered. A plan is a snapshot, so the script builds all frames in the order of their
-// numbers, and the frames are rendered in the order that costs least.
+// Frames that are planned and not yet rendered. A plan is a snapshot, so the script builds all frames in the order of
+// their numbers, and the frames are rendered in the order that costs least.
 typedef struct waiting {
     glintL_work **works; // owned; NULL: rendered, or not selected
     int64_t frames, count; // number of frames of each job, and of all jobs
@@ -151,7 +151,8 @@ typedef struct waiting {
     long long most_bytes; // memory limit of the process while frames wait
 } waiting;
 
-// Returns how many jobs from job i on are animations of the same scene with the same number of frames, and may wait together.
+// Returns how many jobs from job i on are animations of the same scene with the same number of frames, and may wait
+// together.
 static lua_Integer count_together(const glintL_walk *walk, lua_Integer i)
 {
     lua_State *L = walk->L;
@@ -218,7 +219,8 @@ static bool render_waiting(glintL_walk *walk, waiting *w, const glint_scene *sce
     return good && !failed;
 }
 
-// Plans frame n of the current job, and renders it unless it can wait. The first frame never waits. False: the run has failed.
+// Plans frame n of the current job, and renders it unless it can wait. The first frame never waits. False: the run has
+// failed.
 static bool plan_waiting(glintL_walk *walk, waiting *w, int64_t at, int64_t n, int64_t number)
 {
     if (w->has_rendered && !w->in_order && (!may_wait(walk) || glintL_peak_bytes() > w->most_bytes)) {

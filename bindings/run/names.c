@@ -64,7 +64,8 @@ bool glintL_name_is_plain(const char *name, size_t length)
     return good;
 }
 
-// Returns the dot of ".png", ".svg", ".pdf", ".pfm", ".npy" or ".exr"; NULL: another extension, or an empty name before it.
+// Returns the dot of ".png", ".svg", ".pdf", ".pfm", ".npy" or ".exr"; NULL: another extension, or an empty name before
+// the dot.
 static const char *ending(const char *path)
 {
     static const char *const known[] = { ".png", ".svg", ".pdf", ".pfm", ".npy", ".exr" };

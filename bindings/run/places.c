@@ -65,8 +65,8 @@ static void warn(glintL_run *run, const char *path, int64_t first, int64_t index
                     index, path, first, stem < 300 ? stem : 300, path, dot ? dot : "");
 }
 
-// Returns whether the file had another picture; *first is the frame that it was written for. Also false when out of
-// memory: then the run has failed.
+// Returns whether this run has written another picture to the file; *first is the frame of that picture. Out of memory
+// the result is false, and the run has failed.
 static bool replaces(glintL_run *run, const char *name, uint64_t picture, int64_t index, int64_t *first)
 {
     if (glintL_name_is_special(name))

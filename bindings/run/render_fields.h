@@ -5,8 +5,9 @@
 #define GLINT_L_RENDER_FIELDS_H
 
 /// FIELD(name, kind, sort, member of glintL_render, least, most, words)
-/// OPTION(the same, value of the option in --help, help): a field with an option of its name that this row describes
-/// completely; value "": the words; NULL: a switch. The other fields have their options in bindings/command/options.c.
+/// OPTION(the same, value, help): a field whose option has the same name and is described completely by this row.
+/// `value` is the option's value in --help; "": the words; NULL: the option is a switch. The options of the other
+/// fields are in bindings/command/options.c.
 #define GLINTL_RENDER_LIST(FIELD, OPTION)                                                                               \
     FIELD(width, NUMBER, WHOLE, desc.width, 1, GLINT_SIDE_MAX, NULL)                                                    \
     FIELD(height, NUMBER, WHOLE, desc.height, 1, GLINT_SIDE_MAX, NULL)                                                  \

@@ -156,7 +156,8 @@ static bool set_choice(glintL_render *render, const detail *option, const char *
     return false;
 }
 
-// Reads "viridis" or "viridis:1:9". False: the name is wrong, or the range is, and then `message` is written.
+// Reads "viridis" or "viridis:1:9". False: the name is wrong, or the range. Only a wrong range
+// writes `message`.
 static bool set_colors(glintL_render *render, const detail *option, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
     char name[32];

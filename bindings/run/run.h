@@ -434,8 +434,8 @@ void glintL_warn_of_clipping(glintL_run *run);
 
 /// Notes the files of a frame, and warns if one of them had another picture in this run. False: the run has failed.
 bool glintL_places_add(glintL_run *run, const glintL_work *work);
-/// Notes a file that the script saves, or a sheet. number: the last frame before the file; after another frame, the
-/// file counts as another picture.
+/// Notes a sheet, or a file that the script saves. number: the number of the last frame before it. If this run has
+/// already written the file with another number, warns that the earlier picture is lost. False: the run has failed.
 bool glintL_written_note(glintL_run *run, const char *what, const char *path, int64_t number);
 void glintL_places_forget(glintL_run *run);
 
@@ -545,21 +545,22 @@ typedef struct glintL_jobs_state {
 bool glintL_jobs_frame(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state, int64_t g);
 /// Plans frame g for its keys. NULL: it cannot be planned, or the run has failed.
 glint_plan *glintL_jobs_probe(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state, int64_t g);
-/// Adds the axes of job i, none if there is no such job. False: its frames go to a pipe, in the order of their numbers.
+/// Adds the axes of job i to the order; adds none if there is no such job. False: the job's frames go to a pipe, so
+/// they must be rendered in the order of their numbers.
 bool glintL_jobs_axes(lua_State *L, int index, glintL_run *run, int64_t i, struct glintL_order *order);
 /// Draws the sheets of the sweeps. False: the run has failed.
 bool glintL_jobs_end(lua_State *L, int index, glintL_run *run, glintL_jobs_state *state);
 
-/// Stores the plan of one frame in run->explain_plan, if the list contains the frame. With run->keeps_scene also its
-/// scene and the rest.
+/// Stores the plan of the explained frame in run->explain_plan, if the list contains the frame. With run->keeps_scene
+/// it also stores the frame's scene, its render options and the plan of a neighbouring frame.
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
 
 // ---- call.c ----
 
 /// Decides the name of the first call at the end of the script. False: the run has failed.
 bool glintL_call_settle(glintL_run *run);
-/// Raises an error if the script must return its frames under --sweep: after a point whose script returned frames or
-/// failed.
+/// Raises an error if the script may not render by calls: under --sweep, when the script returned its frames at the
+/// first point, or failed there.
 void glintL_check_may_render(lua_State *L, const glintL_run *run);
 /// Raises the error that ends a script which has provided what was requested (its parameters, one frame's plan).
 int glintL_stop_script(lua_State *L);

@@ -54,8 +54,9 @@ typedef struct glintL_axes {
     size_t cell_count;
 } glintL_axes;
 
-/// Reads the files of a sheet and finds its axes: the places, then parameters, options and passes that differ. False: a
-/// file is missing, or differs in size or origin; *code is the exit code. The caller drops `out` in any case.
+/// Reads the files of a sheet and finds its axes: first the axes of sweeps, then the parameters, options and passes
+/// that differ. False: a file is missing, or differs in size or origin; *code is the exit code. The caller drops `out`
+/// in any case.
 bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, char message[GLINTL_MESSAGE_SIZE]);
 void glintL_axes_drop(glintL_axes *axes);
 

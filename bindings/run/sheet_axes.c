@@ -204,7 +204,7 @@ bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, ch
         return no_memory(message);
     }
     out->is_grid = is_grid(out);
-    if (!out->is_grid) { // passes change fastest, and in files of nested shell loops the last name does
+    if (!out->is_grid) { // passes change fastest; so does the last name in files made by nested shell loops
         glintL_axis before[GLINTL_AXES_MAX];
         memcpy(before, out->axis, sizeof before);
         sort(out);

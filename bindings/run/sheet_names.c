@@ -11,7 +11,8 @@ static const char *skip_digits(const char *at)
     return at;
 }
 
-// Returns the last character of the conversion at `at`, which begins with '%'; NULL: not of a number such as "%+8.2f".
+// Returns the last character of the conversion at `at`, which begins with '%'. NULL: it does not convert a number, as
+// "%+8.2f" does.
 static const char *find_conversion(const char *at)
 {
     at = skip_digits(at + 1 + strspn(at + 1, "+-# 0"));

@@ -128,7 +128,8 @@ static const char *read_text(lua_State *L, int sheet, const char *name) // the t
     return text;
 }
 
-// Pushes a field that is a table { axis = text } as "axis=text" lines; a text is of every axis, with an empty name.
+// Pushes a field as "axis=text" lines. The field is a table { axis = text }, or one text for all axes, whose line has
+// an empty name.
 static const char *push_lines(lua_State *L, int sheet, const char *name)
 {
     lua_pushliteral(L, "");

@@ -30,8 +30,9 @@ int glintL_walk_build(lua_State *L); ///< for glintL_walk_call: builds frame n a
 int glintL_walk_restore(lua_State *L); ///< for glintL_walk_call: restores the values that a sweep changed
 /// Sets the scene to frame n at its own time. False: the run has failed.
 bool glintL_walk_build_frame(glintL_walk *walk, int64_t n, int64_t number);
-/// Brings the scene to the state in which job i starts, whichever frames are rendered here: after an animation's last
-/// frame; unchanged by a sweep. So a shard renders the same pictures as the whole job. False: the run has failed.
+/// Brings the scene to the state in which job i starts: previous animations are at their last frame, and previous
+/// sweeps have changed nothing. The state does not depend on the frames that this run renders, so a shard renders the
+/// same pictures as the whole job. False: the run has failed.
 bool glintL_walk_settle(glintL_walk *walk, lua_Integer i, int64_t first);
 glint_scene *glintL_walk_scene(glintL_walk *walk); ///< the job's scene; NULL: it is closed
 glint_scene *glintL_walk_open_scene(glintL_walk *walk, int64_t number); ///< NULL: it is closed, and the run has failed

@@ -35,7 +35,7 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     work->render = *render;
     glint_render_desc *desc = &work->render.desc;
     desc->passes = writes || keep_image ? render->file_passes : 0;
-    desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes codes too, for its timing
+    desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes pixel values too, for its timing
     if (keep_image || is_linear || (writes && glintL_tone_is_data(&desc->tone)))
         desc->passes |= 1u << GLINT_PASS_BEAUTY;
     glint_status status = glintL_check_light_passes(scene, render, error);

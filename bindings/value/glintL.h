@@ -24,7 +24,7 @@ typedef struct glintL_custom {
 } glintL_custom;
 #define GLINTL_CUSTOM(read, push) .type = GLINT_TYPE_CUSTOM, .custom = &(const glintL_custom) { read, push }
 
-/// A distance, or a point.
+/// A value that may be given as a distance or as a point.
 typedef struct glintL_distance {
     double number; ///< 0: not given as a number
     bool has_point;
@@ -165,9 +165,11 @@ void glintL_push_pose(lua_State *L, const glintL_field *parts, const void *desc)
 
 // ---- Patterns as values: bindings/pattern is a layer above, and registers its functions when the module opens ----
 
+/// The functions of bindings/pattern that this layer calls: glintL_traced_position, glintL_is_source and so on, which
+/// are declared below.
 typedef struct glintL_tracing {
     const char *(*place)(lua_State *L,
-                         lua_CFunction reached); ///< glintL_traced_position; the others likewise, see below
+                         lua_CFunction reached); ///< glintL_traced_position
     bool (*is_source)(lua_State *L, int index, bool is_shader);
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
@@ -194,8 +196,8 @@ int glintL_cross(lua_State *L);
 int glintL_length(lua_State *L);
 int glintL_unit(lua_State *L);
 int glintL_reflect(lua_State *L);
-/// Returns the position of the traced function: "scene.lua:12: ". NULL: `reached`, found on the call stack of an error,
-/// is not the C function that calls it.
+/// Returns the position of the traced function: "scene.lua:12: ". `reached` is a C function on the call stack of an
+/// error. NULL: it is not the one that calls traced functions.
 const char *glintL_traced_position(lua_State *L, lua_CFunction reached);
 /// Raises if a pattern's function is running, during which `what` would change the scene.
 void glintL_refuse_within_trace(lua_State *L, const char *what);
@@ -335,8 +337,8 @@ bool glintL_is_given(lua_State *L, const char *name);
 void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
 /// Lists a variant of a class in glint._fields(), including the methods of every object.
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
-/// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, takes_variable, default } for
-/// each field, empty if the object has no table in the engine.
+/// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, takes_variable, default }
+/// for each field. The list is empty if the object has no table in the engine.
 int glintL_list_rows(lua_State *L);
 void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< adds a variant to that list
 /// Pushes the result of glint._fields(): variant -> name -> "field" or "method".

@@ -62,8 +62,8 @@ static watch_graphics find_graphics(void)
     return strstr(answer, "_Gi=31;OK") ? WATCH_KITTY : has_sixel(answer) ? WATCH_SIXEL : WATCH_BLOCKS;
 }
 
-// Returns whether the terminal has colours. By terminfo name it has none if it is one of DEC's VT52 to VT525 except
-// VT525 and VT241, or if the name ends in "-m".
+// Returns whether the terminal has colours, by its terminfo name. DEC's terminals ("vt100" and similar) have none,
+// except for VT525 and VT241. Terminals whose name ends in "-m" have none, either.
 static bool has_colors(void)
 {
     const char *term = getenv("TERM");

@@ -356,7 +356,8 @@ static bool render(int64_t frame)
     return !job.script.has_jobs || cli_run_jobs(&job.script, run);
 }
 
-/// Renders a frame. keeps: the image stores its float32 numbers; otherwise only codes, which are cached tile by tile.
+/// Renders a frame. keeps: the image stores its float32 numbers; otherwise only pixel values, which are cached tile by
+/// tile.
 EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
 {
     job.run->keeps_images = keeps;

@@ -21,7 +21,7 @@ import { load } from "./glint.mjs"
 const REST_MS = 150         // after this time without changes the full picture is rendered
 const COARSE_MS = 30        // time limit for a picture while a control moves
 const PATIENCE_MS = 300     // a full picture that takes longer is cancelled by the next request; its worker starts anew
-const LOGARITHMIC = 100     // larger ratios of a range's ends have a logarithmic slider
+const LOGARITHMIC = 100     // a slider is logarithmic if the ratio of its ends is larger
 
 let engine // one for all figures of a page
 const engineOfPage = () => engine ??= load()
