@@ -2,7 +2,7 @@
 --
 -- The squares are a pattern, a function of the point that glint.pattern turns into a program: no quads, and no picture.
 -- Towards the horizon a pixel is wider than a square; with the pixel's footprint as the checker's last argument the
--- squares fade to their mean there, at one sample a pixel. `--set filtered=false` shows them without it. Only the lamp
+-- squares fade to their mean there, at one sample a pixel. `--set filtered=false` leaves them sharp. Only the lamp
 -- moves: `glint scripts/chessboard.lua --json` shows that the stage `pattern` runs only in the first frame.
 --     glint scripts/chessboard.lua -o board.mp4
 local glint = require "glint"

@@ -9,6 +9,6 @@ if [ $# -lt 2 ]; then
 fi
 shards=$1
 shift
-# A shard that fails is tried twice more; one that a lost machine left is done by another.
+# A shard that fails is tried twice more. A shard of a lost machine is run again by another machine.
 exec parallel --jobs "${JOBS:-1}" --tag --line-buffer --retries 3 --quote \
     "${GLINT:-glint}" "$@" --shard "{}/$shards" ::: $(seq "$shards")

@@ -1,6 +1,7 @@
 # The page of the modules, from their comments: make pages writes it to build/doc/data.md.
 #     awk -f page.awk glint/xyz.lua ...
-# A module's first comment tells what it is; `---` before a function what that does, with its parameters.
+# A module's first comment says what the module is. A `---` comment before a function says what the function does, and
+# describes its parameters.
 function name_of(path) {
     sub(/^.*scripts\/lib\//, "", path)
     sub(/\.lua$/, "", path)

@@ -13,7 +13,7 @@ local elements, boxes = require "glint.elements", require "glint.box"
 local bonds = {}
 
 local CLOSEST = 0.4 -- angstroms: closer atoms are one atom in alternate positions
-local NEVER = 0 / 0 -- a reach below which no distance is: comparisons are false
+local NEVER = 0 / 0 -- NaN: no distance is below this reach, as every comparison is false
 local SIDE = 1 << 20 -- cells along each axis, at most
 local IMAGES = 8 -- limit of the longest bond, in sides of the periodic box
 
@@ -119,7 +119,7 @@ end
 ---@param set table
 ---@param options? { radius: number, tolerance: number, distance: number, box: table|false }  radius of the cylinders
 --- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two instead of covalent
---- radii; box, see glint.box: across whose periodic faces bonds are made (default: the box of the frames, if any)
+--- radii; box, whose periodic faces bonds may cross, see glint.box (default: the box of the frames, if any)
 ---@return table? group
 ---@return integer count  number of bonds
 function bonds.new(set, options)

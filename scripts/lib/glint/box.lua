@@ -1,5 +1,5 @@
 -- The box of a simulation: { low, size, periodic, xy, xz, yz } as in glint.lammps; its sides are {size x, 0, 0},
--- {xy, size y, 0} and {xz, yz, size z}. { size = { 10, 10, 10 } } is enough by hand: at 0, upright, periodic.
+-- {xy, size y, 0} and {xz, yz, size z}. By default a box is at 0, upright and periodic: { size = { 10, 10, 10 } }.
 --     scene:add(box.edges(frame.box))                 -- drawn as thin cylinders; also for frame.cell of glint.xyz
 --     scene:add(glint.axes { box = frame.box or frame.cell })     -- with numbers along three of its edges
 local glint = require "glint"

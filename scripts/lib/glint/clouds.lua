@@ -107,7 +107,7 @@ local function unpack_lzf(packed, size)
   return table.concat(parts)
 end
 
--- Returns one for LZF data: the first field of all points, then the second field of all points, and so on.
+-- Returns such a function for LZF data, which have the first field of all points, then the second one, and so on.
 local function packed_rows(source, layout)
   local function fail(what) error(("%s: %s"):format(source.path, what), 0) end
   if source.path == "-" then fail "a cloud of points as text expected, got a binary one" end

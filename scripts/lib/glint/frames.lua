@@ -59,7 +59,7 @@ local function values(...)
   return table.unpack(list, 1, select("#", ...))
 end
 
---- For frames whose lines are words: a function (names) that returns a function of a line: these columns' words.
+--- For frames whose lines are words: returns pick(names), which returns a function from a line to these columns' words.
 ---@param places table<string, integer>  the number of the word of each name, from 1
 function frames.words(places)
   return function(names)

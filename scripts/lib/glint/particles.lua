@@ -365,8 +365,8 @@ function set:spheres(fields)
   return shape
 end
 
---- Returns the centre of the box around all spheres, and half its diagonal. Without spheres: of the frames' box;
---- without a box the origin and 1.
+--- Returns the centre of the box around all spheres, and half its diagonal. Without spheres it uses the frames'
+--- box; without a box it returns the origin and 1.
 ---@return number[] center
 ---@return number radius
 function set:extent()
@@ -404,8 +404,8 @@ local function check_camera(fields)
 end
 
 --- Returns a camera that has all spheres in view in a picture at least as wide as high.
----@param fields table  from: the direction from the centre to the eye, {x, y, z}; margin: distance in place of the one
---- that fits, as a factor (default 1); and a camera's fov (default 30), up, name,
+---@param fields table  from: the direction from the centre to the eye, {x, y, z}; margin: a factor of the
+--- distance at which the spheres just fit (default 1); and a camera's fov (default 30), up, name,
 --- projection ("orthographic": the margin is a factor of its height)
 function set:camera(fields)
   check_camera(fields)

@@ -82,8 +82,8 @@ local function read_atom(source, fields, line)
     source:number_of(line:sub(39, 46), "y, columns 39-46,"), source:number_of(line:sub(47, 54), "z, columns 47-54,")
 end
 
--- Returns whether to read an atom: of alternate locations the first; of a residue with several kinds, the atoms of the
--- first kind. Only the current residue, and all atoms with alternate locations, are stored.
+-- Returns whether to read an atom. Only the first of alternate locations is read, and of a residue with several kinds
+-- only the first kind. Only the current residue, and all atoms with alternate locations, are stored.
 local function is_first(fields, line)
   local name, alternate, kind = line:sub(13, 16), line:sub(17, 17), line:sub(18, 20)
   local place = line:sub(22, 27) .. line:sub(73, 76)

@@ -37,8 +37,8 @@ local function read_coordinates(text, place)
   return { u, v }
 end
 
--- Reads a face. Its numbers count from 1, or backwards from the last vertex if negative; in the list from 0. face.uv
--- has the texture coordinates of each corner, if all have some.
+-- Reads a face as a list of vertex numbers from 0. In the file they count from 1, or backwards from the last vertex if
+-- negative. face.uv has the texture coordinates of each corner, if all have some.
 local function read_face(text, count, coordinates, place)
   local face, n, uv = {}, 0, #coordinates > 0 and {} or nil
   for word in text:gmatch "%S+" do
