@@ -1,7 +1,7 @@
 -- A room of the gr dialect's variants: planes, an area light and a column: glint --dialect gr scripts/gr_room.lua
 
 gr.options.plane = 'xz' -- a square of edge 1 around the origin; other variants have other squares
-gr.options.axis = 'y'   -- in the variants z, as in the course
+gr.options.axis = 'y'   -- the default is z, as in the course
 
 white = gr.material({0.7, 0.7, 0.68}, {0, 0, 0}, 0)
 red = gr.material({0.65, 0.15, 0.12}, {0, 0, 0}, 0)

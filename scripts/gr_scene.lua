@@ -1,5 +1,5 @@
 -- A scene of the gr dialect, as its course's students write them: glint --dialect gr scripts/gr_scene.lua
--- A temple of one column: each instance shows what is called on the shared node, before and after.
+-- A temple: its twelve columns are one shared node. The vase gets its transforms after it was added to the temple.
 
 stone = gr.material({0.75, 0.72, 0.66}, {0.1, 0.1, 0.1}, 10)
 sand = gr.material({0.55, 0.47, 0.35}, {0, 0, 0}, 0)

@@ -137,8 +137,8 @@ function glint.directional_light(fields) end
 ---@return glint.spot_light
 function glint.spot_light(fields) end
 
---- Lights with a surface have soft shadows. With `intensity` each adds the mean over its surface of a point light
---- there; with `radiance` L, the integral of L cos cos' / distance^2 over its surface, instead of A V (n.l).
+--- Lights with a surface have soft shadows. With `intensity`, a light adds the mean of point lights all over its
+--- surface; with `radiance` L, the integral of L cos cos' / distance^2 over its surface, instead of A V (n.l).
 ---@class glint.disk_light_fields
 ---@fields disk_light
 
@@ -386,8 +386,8 @@ function combined:remove(shape) end
 
 --- Everything inside any of its 1 .. 64 parts, as one solid (a torus counts twice, a closed mesh four times). A plane
 --- is the half-space behind it; a group is everything inside its shapes. A part shows only on the boundary of the
---- solid, with its own material or, without one, the solid's. That defaults to the first material among the parts; its
---- `ior` and `absorption` apply inside. The solid is one object. `two_sided` of parts has no effect.
+--- solid, with its own material or, without one, the solid's. The solid's material defaults to the first material of
+--- the parts. Its `ior` and `absorption` apply inside. The solid is one object. `two_sided` of parts has no effect.
 ---@class glint.union: glint.combined
 
 ---@param fields glint.combined_fields
@@ -557,7 +557,7 @@ function glint.polyline(fields) end
 ---@field normal? glint.vec3  normal at the point. Default nil: the normal of the scene's surface at the point, on the side of the camera
 ---@field scale? number  length of a highlight of 1, world units, > 0. Default nil: 1
 
---- The polar diagram of a highlight, in the plane of normal and light: in each direction as long as the specular light
+--- The polar diagram of a highlight, in the plane of normal and light. Its length in a direction is the specular light
 --- of material:evaluate, the mean of red, green and blue. Computed before each frame from the material as it is then.
 ---@class glint.lobe: glint.lobe_fields
 ---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
@@ -572,7 +572,7 @@ function glint.lobe(fields) end
 
 ---@class glint.path_fields: glint.curve_fields
 ---@field scene? glint.scene  the scene that the ray goes through. Default nil: the scene that is rendered
----@field origin glint.vec3  begin of the ray in the world
+---@field origin glint.vec3  start of the ray in the world
 ---@field direction glint.vec3  direction of the ray, not zero
 ---@field depth? integer  number of surfaces at which the ray goes on, 0 .. 63. Default 4
 ---@field reach? number  length of a segment that hits nothing, world units, > 0. Default nil: the length of the first segment
@@ -623,7 +623,7 @@ function glint.frustum(fields) end
 ---@field samples? integer  rays from each visible point, 1 .. 65536. Default 16
 ---@field distance? number  world units, > 0: surfaces farther away do not occlude. Default math.huge
 
---- Makes the scene's field of this name as a value, which a scene also accepts among its objects.
+--- Checks the fields of a scene's `ambient_occlusion` and returns them. A scene also accepts the result as an object.
 ---@param fields glint.ambient_occlusion
 ---@return glint.ambient_occlusion
 function glint.ambient_occlusion(fields) end
@@ -696,7 +696,7 @@ function glint.scene(fields) end
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
 ---| "albedo"  # diffuse reflectance, including patterns; 0 where nothing is hit
 ---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers. "light:NAME": the light of the lamps
---- of that group or name; "light:ambient": the light that no lamp sends; "light:*": all of these
+--- of that group or name; "light:ambient": the light that comes from no lamp; "light:*": all of these
 ---| "outline"  # 1 on outlines and edges of objects, else 0; one number, at the pixel's centre
 
 --- Options of a frame and its file. The command line takes precedence.
@@ -704,7 +704,7 @@ function glint.scene(fields) end
 ---@field width? integer  pixels, 1 .. 65535. Default 1280
 ---@field height? integer  pixels, 1 .. 65535. Default 720
 ---@field samples? integer  samples per pixel, 1 .. 65536. Default 1
----@field adaptive? number  0 .. 3: takes all samples only for pixels at an edge, or whose pixel values differ by more from a neighbour's: the sum of the differences in red, green and blue, with white at 1. Other pixels get one sample. Default 0: off
+---@field adaptive? number  0 .. 3: takes all samples only in pixels at an edge, and in pixels that differ from a neighbour by more than this number: the sum of the differences in red, green and blue, with white at 1. Other pixels get one sample. Default 0: off
 ---@field seed? integer  0 .. 2^53: selects one of many equally good sample patterns. Default 0
 ---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 if mirror + transmission of a material exceeds 1. Default 5
 ---@field precision? "double"|"float"  the number format in which hits and shadows are decided. Default "double"
@@ -938,7 +938,7 @@ function triple:unpack() end
 ---@class glint.pattern
 local pattern = {}
 
---- Returns the colour at a point, by the frame's kernel; a single number three times. Values of `s` have their names.
+--- Returns the colour at a point, computed by the frame's kernel; a single number is grey. `at` names fields of `s`.
 ---@param at table  {p = {x, y, z}, uv = {u, v}, n = ..., ...}
 ---@return glint.vector
 function pattern:evaluate(at) end
@@ -964,7 +964,7 @@ function glint.shader(f) end
 ---@class glint.texture_fields
 ---@field file string  a PNG file, 8 or 16 bits
 ---@field wrap? "repeat"|"clamp"|"around"  beyond 0 .. 1: repeats the picture, extends its border, or repeats it horizontally and extends its border vertically. Default "repeat"
----@field filter? "bilinear"|"nearest"  interpolates four texels, of a copy of the picture reduced to fit the footprint; or takes the nearest texel. Default "bilinear"
+---@field filter? "bilinear"|"nearest"  "bilinear" interpolates four texels of a copy of the picture that is reduced to fit the footprint; "nearest" takes the nearest texel. Default "bilinear"
 ---@field transfer? "srgb"|"linear"  how the file's values are read. Default "srgb", except for a file that is marked as linear
 
 --- A picture. Inside a pattern call it: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) returns red, green and
@@ -1232,7 +1232,7 @@ function glint.pow(a, b) end
 
 ---@alias glint.easing "linear"|"smooth"|"smoother"|"in"|"out"
 
---- Returns the share of a motion done at a share of its time: 0 before the start, 1 after the end. smooth (the
+--- Returns the share of a motion that is done after the share t of its time: 0 before the start, 1 after the end. smooth (the
 --- default): 3 t^2 - 2 t^3; smoother: 6 t^5 - 15 t^4 + 10 t^3; in: t^2; out: 2 t - t^2.
 ---@param t number
 ---@param kind glint.easing?
