@@ -7,7 +7,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  height = { 0.05, min = 0, max = 0.3, doc = "of the bricks over the mortar, world units" },
+  height = { 0.05, min = 0, max = 0.3, doc = "height of the bricks over the mortar, world units" },
   mortar = { 0.05, min = 0.005, max = 0.2, doc = "width of a joint, world units" },
 }
 

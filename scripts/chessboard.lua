@@ -8,7 +8,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  filtered = { true, doc = "mean of the squares that a pixel sees" },
+  filtered = { true, doc = "show the mean of the squares that a pixel covers" },
   square = { 1, min = 0.1, max = 4, doc = "side of a square, world units" },
 }
 

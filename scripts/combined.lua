@@ -2,7 +2,7 @@
 -- lens, which is the intersection of two balls.
 local glint = require "glint"
 local P = glint.params {
-  turn = { 25, doc = "of the die, degrees" },
+  turn = { 25, doc = "rotation of the die, degrees" },
   pips = { 0.17, min = 0.02, max = 0.3, doc = "radius of a pip, world units; the die is 2 wide" },
 }
 

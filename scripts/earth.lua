@@ -9,8 +9,8 @@ local glint = require "glint"
 local png = require "glint.png"
 
 local P = glint.params {
-  file = { "", doc = "a picture of the globe in place of the painted one" },
-  width = { 384, min = 16, max = 4096, doc = "of the painted picture, pixels" },
+  file = { "", doc = "a picture of the globe instead of the painted one" },
+  width = { 384, min = 16, max = 4096, doc = "width of the painted picture, pixels" },
 }
 
 local function height(p)

@@ -13,8 +13,8 @@
 local glint = require "glint"
 
 local P = glint.params {
-  samples = { 64, min = 1, max = 65536, doc = "ways of light a sample of a pixel" },
-  ambient = { 0.3, min = 0, max = 1, doc = "light that stands for what is not followed" },
+  samples = { 64, min = 1, max = 65536, doc = "light paths for each sample of a pixel" },
+  ambient = { 0.3, min = 0, max = 1, doc = "ambient light, which replaces the light that paths leave out" },
 }
 
 local white = glint.material { diffuse = 0.73 }

@@ -9,7 +9,7 @@ local P = glint.params {
   file = { (arg[0]:match "^.*/" or "") .. "data/cottage.obj", doc = "a file .obj, .stl or .ply" },
   from = { "0.45,0.35,1", doc = "the direction from the mesh to the eye, x,y,z" },
   up = { "0,1,0", doc = "the direction that is up in the picture, x,y,z" },
-  shading = { "", choices = { "", "faceted", "phong", "flat", "gouraud" }, doc = "nothing: as the file has normals" },
+  shading = { "", choices = { "", "faceted", "phong", "flat", "gouraud" }, doc = "none: phong if there are normals" },
 }
 
 local function vector(name)

@@ -7,7 +7,7 @@ local nff = require "glint.nff"
 
 local P = glint.params {
   file = { "balls.nff", doc = "the file" },
-  mirrors = { true, doc = "with mirrors and transparent surfaces" },
+  mirrors = { true, doc = "render mirrors and transparent surfaces" },
 }
 local picture = nff.load(P.file, { mirrors = P.mirrors })
 picture.scene:render { width = picture.width, height = picture.height, samples = 4, output = "nff.png" }

@@ -7,7 +7,7 @@ local glint = require "glint"
 
 local P = glint.params {
   samples = { 32, min = 1, max = 65536, doc = "rays from each point" },
-  distance = { 3, min = 0.01, doc = "of the third frame" },
+  distance = { 3, min = 0.01, doc = "distance of the farthest occluders in the third frame" },
   side = { 22, min = 4, max = 200, doc = "balls along a side" },
 }
 

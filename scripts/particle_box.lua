@@ -7,11 +7,11 @@ local glint = require "glint"
 local particles, lammps, bonds = require "glint.particles", require "glint.lammps", require "glint.bonds"
 
 local P = glint.params {
-  count = { 100000, min = 1, max = 1e8, doc = "particles" },
-  format = { "f64", choices = { "f64", "f32" }, doc = "how the numbers are kept; f32 takes half the memory" },
+  count = { 100000, min = 1, max = 1e8, doc = "number of particles" },
+  format = { "f64", choices = { "f64", "f32" }, doc = "number format of the spheres; f32 takes half the memory" },
   file = { "", doc = "a LAMMPS dump file" },
-  frame = { 1, min = 1, max = 1e9, doc = "which frame of it" },
-  longest = { 0, min = 0, max = 1000, doc = "of the bonds to draw, with radii halved; 0: none" },
+  frame = { 1, min = 1, max = 1e9, doc = "number of the frame in the file" },
+  longest = { 0, min = 0, max = 1000, doc = "longest bond to draw, with radii halved; 0: no bonds" },
 }
 local joins = P.longest > 0
 local set = particles.new { format = P.format, scale = joins and 0.5 or 1,

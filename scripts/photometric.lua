@@ -36,18 +36,18 @@ local P = glint.params {
   spread = { 65, min = 1, max = 85, doc = "degrees from the camera's axis to the outermost light" },
   shadows = { true, doc = "do objects cast shadows on each other?" },
   specular = { 0, min = 0, max = 1, doc = "strength of a highlight; 0: matt surfaces" },
-  exact = { false, doc = "write .pfm (float32) in place of 16-bit .png" },
+  exact = { false, doc = "write .pfm (float32) instead of 16-bit .png" },
   folder = { "photometric", doc = "where the files go" },
   layout = { "glint", choices = { "glint", "diligent" }, doc = "names and formats of the files" },
-  objects = { "balls", doc = "of diligent: balls, sphere, solids, dents, by commas" },
-  materials = { "matt", doc = "of diligent: matt, glossy, rough, gold, by commas" },
-  vary = { 0, min = 0, max = 0.9, doc = "of diligent: how much weaker lights may be, by channel" },
-  size = { 512, min = 8, max = 4096, doc = "pixels a side, where --size does not say" },
+  objects = { "balls", doc = "for diligent: balls, sphere, solids, dents, separated by commas" },
+  materials = { "matt", doc = "for diligent: matt, glossy, rough, gold, separated by commas" },
+  vary = { 0, min = 0, max = 0.9, doc = "for diligent: how much weaker a light may be, in each channel" },
+  size = { 512, min = 8, max = 4096, doc = "pixels per side, unless --size is given" },
 }
 
 local given = glint._output() -- the value of -o
 if given and P.layout == "diligent" then
-  error("-o: layout=diligent has names of its own; --set folder=... says where they go", 0)
+  error("-o: layout=diligent names the files itself; choose the folder with --set folder=...", 0)
 end
 local folder = given and (given:match "^(.*)/[^/]*$" or ".") or P.folder
 

@@ -9,8 +9,8 @@
 local glint = require "glint"
 
 local P = glint.params {
-  distribution = { "ggx", choices = { "ggx", "beckmann" }, doc = "of the facets' slopes" },
-  f0 = { 0.5, min = 0, max = 1, doc = "what is reflected head-on" },
+  distribution = { "ggx", choices = { "ggx", "beckmann" }, doc = "distribution of the facets' slopes" },
+  f0 = { 0.5, min = 0, max = 1, doc = "reflectance of the surface seen head-on" },
 }
 
 local ROUGHNESS <const> = { 0.25, 0.35, 0.5, 0.65, 0.8 }

@@ -6,7 +6,7 @@ local glint = require "glint"
 
 local P = glint.params {
   rows = { 80, min = 3, max = 1000, doc = "faces from pole to pole" },
-  file = { "scan.ply", doc = "the .ply that is written" },
+  file = { "scan.ply", doc = "the .ply file to write" },
 }
 
 -- Returns the distance of the surface in a direction, and its colour there.

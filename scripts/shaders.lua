@@ -11,7 +11,7 @@ local models = require "glint.models"
 
 local P = glint.params {
   shininess = { 40, min = 1, max = 1000, doc = "exponent of the highlights" },
-  roughness = { 0.6, min = 0, max = 1.5, doc = "of Oren and Nayar's model, radians" },
+  roughness = { 0.6, min = 0, max = 1.5, doc = "roughness of Oren and Nayar's model, radians" },
 }
 
 local BLUE <const>, CLAY <const> = { 0.1, 0.25, 0.6 }, { 0.65, 0.3, 0.2 }

@@ -9,9 +9,9 @@ local glint = require "glint"
 local png = require "glint.png"
 
 local P = glint.params {
-  file = { "", doc = "a picture of all directions in place of the painted one" },
-  width = { 512, min = 16, max = 8192, doc = "of the painted picture, pixels" },
-  samples = { 16, min = 1, max = 4096, doc = "ways of light from each point" },
+  file = { "", doc = "a picture of all directions instead of the painted one" },
+  width = { 512, min = 16, max = 8192, doc = "width of the painted picture, pixels" },
+  samples = { 16, min = 1, max = 4096, doc = "light paths from each point" },
 }
 
 local SUN <const> = glint.unit { -0.5, 0.45, -1 }

@@ -7,11 +7,11 @@ local glint = require "glint"
 local particles, boxes = require "glint.particles", require "glint.box"
 
 local P = glint.params {
-  file = { "", doc = "a LAMMPS dump, or extended XYZ (.xyz); nothing: a crystal of our own" },
+  file = { "", doc = "a LAMMPS dump, or extended XYZ (.xyz); none: a crystal that the script writes" },
   column = { "vel_z", doc = "the column whose values are colours" },
-  map = { "coolwarm", choices = { "viridis", "magma", "cividis", "turbo", "coolwarm" }, doc = "of colours" },
-  low = { -2, doc = "what its first colour stands for" },
-  high = { 2, doc = "and its last" },
+  map = { "coolwarm", choices = { "viridis", "magma", "cividis", "turbo", "coolwarm" }, doc = "colour map" },
+  low = { -2, doc = "value of the first colour" },
+  high = { 2, doc = "value of the last colour" },
 }
 
 local FRAMES, SIDE = 48, 12

@@ -7,8 +7,8 @@
 local glint = require "glint"
 
 local P = glint.params {
-  rings = { 9, min = 1, max = 40, doc = "rings of the wood a world unit" },
-  veins = { 1.6, min = 0.2, max = 8, doc = "veins of the marble a world unit" },
+  rings = { 9, min = 1, max = 40, doc = "rings of the wood per world unit" },
+  veins = { 1.6, min = 0.2, max = 8, doc = "veins of the marble per world unit" },
   turbulence = { 2.6, min = 0, max = 8, doc = "how far the veins are bent" },
 }
 

@@ -50,7 +50,7 @@ static void find_normal(lua_State *L, const glint_scene *scene, const double lig
     add_scaled(origin, desc->point, above, light);
     glintL_check_status(L, "lobe", &error, glint_scene_cast(scene, origin, back, &hits, &hit, &error));
     if (!hits || fabs(hit.t - above) > 1e-3 * above)
-        glintL_error(L, "lobe.normal: expected, because no surface is at the point {%f, %f, %f}", desc->point[0], desc->point[1],
+        glintL_error(L, "lobe.normal: {x, y, z} expected, because no surface is at the point {%f, %f, %f}", desc->point[0], desc->point[1],
                      desc->point[2]);
     const glint_camera *camera = glint_scene_get(scene)->camera;
     double view[3] = { hit.normal[0], hit.normal[1], hit.normal[2] };

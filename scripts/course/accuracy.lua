@@ -2,9 +2,9 @@
 local glint = require "glint"
 
 local P = glint.params {
-  samples = { 4, min = 1, max = 64, doc = "rays a pixel" },
-  light_samples = { 4, min = 1, max = 64, doc = "shadow rays to the lamp, for each of these" },
-  radius = { 1.5, min = 0, max = 4, doc = "of the lamp: 0 gives hard shadows" },
+  samples = { 4, min = 1, max = 64, doc = "rays per pixel" },
+  light_samples = { 4, min = 1, max = 64, doc = "shadow rays to the lamp, for each ray through a pixel" },
+  radius = { 1.5, min = 0, max = 4, doc = "radius of the lamp: 0 gives hard shadows" },
 }
 
 local function ball(x, z, radius, color)

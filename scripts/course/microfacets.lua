@@ -5,8 +5,8 @@ local glint = require "glint"
 local P = glint.params {
   roughness = { 0.35, min = 0.05, max = 1, doc = "0 is a mirror, 1 is nearly matt" },
   angle = { 60, min = 0, max = 170, doc = "direction of the lamp: 0 is behind the viewer, 90 straight above" },
-  distribution = { "ggx", choices = { "ggx", "beckmann" }, doc = "of the little mirrors' normals" },
-  metal = { "gold", choices = { "gold", "copper", "silver" }, doc = "f0, the reflectance of the metal seen head-on" },
+  distribution = { "ggx", choices = { "ggx", "beckmann" }, doc = "distribution of the tiny mirrors' normals" },
+  metal = { "gold", choices = { "gold", "copper", "silver" }, doc = "the metal; its reflectance seen head-on is f0" },
 }
 
 local f0 = ({ gold = { 1, 0.77, 0.34 }, copper = { 0.95, 0.64, 0.54 }, silver = { 0.95, 0.93, 0.88 } })[P.metal]

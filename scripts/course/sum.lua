@@ -3,7 +3,7 @@ local glint = require "glint"
 
 local P = glint.params {
   ambient = { 0.15, min = 0, max = 1, doc = "Ia, the ambient light" },
-  intensity = { 0.8, min = 0, max = 4, doc = "of the lamp" },
+  intensity = { 0.8, min = 0, max = 4, doc = "intensity of the lamp" },
   diffuse = { 0.8, min = 0, max = 1, doc = "kd, times the colour of each ball" },
   specular = { 0.5, min = 0, max = 1, doc = "ks, white" },
   tone = { "clamp", choices = { "clamp", "reinhard", "filmic" }, doc = "how light above 1 becomes a colour" },

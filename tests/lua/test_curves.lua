@@ -141,7 +141,7 @@ function tests.lobes_follow()
   draw(scene)
   check(area() > 0, "a light along the normal")
   lobe.point = { 0, 5, 0 }
-  raises("lobe.normal: expected, because no surface is at the point {0", function() draw(scene) end)
+  raises("lobe.normal: {x, y, z} expected, because no surface is at the point {0", function() draw(scene) end)
   lobe.normal = { 0, 1, 0 }
   draw(scene)
   check(lobe.normal == vec(0, 1, 0), "the script's own normal")

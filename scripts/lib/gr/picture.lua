@@ -51,7 +51,8 @@ local function count_shapes(root)
     end
   end
   if count[root] > MOST_SHAPES then
-    check.raise("gr.render: at most %d shapes expected, got %.14g, each as often as it shows", MOST_SHAPES, count[root])
+    check.raise("gr.render: at most %d shapes expected, got %.14g, counting each place of a shape",
+      MOST_SHAPES, count[root])
   end
   return count
 end
