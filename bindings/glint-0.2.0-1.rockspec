@@ -1,5 +1,5 @@
--- `luarocks --lua-version 5.4 make bindings/glint-0.2.0-1.rockspec` in a checkout builds and installs the module and the command; so does
--- `luarocks install` of the rock that `make dist` makes of this file and the archive of the sources.
+-- `luarocks --lua-version 5.4 make bindings/glint-0.2.0-1.rockspec` in a checkout builds and installs the module and the command. So does
+-- `luarocks install` with the rock that `make dist` makes from this file and the archive of the sources.
 -- The libraries come from the system: see tests/deps.sh for their Debian names.
 rockspec_format = "3.0"
 package = "glint"

@@ -29,7 +29,7 @@ typedef struct points {
     int64_t frames; // number of frames of each point; 0: not known yet
     unsigned char *failed; // owned; for each point: its script has failed
     bool has_failed; // any point has failed
-    bool together, in_order; // some job's runs advance together; some frames go to a pipe
+    bool together, in_order; // together: the runs of some job advance together; in_order: some frames go to a pipe
     int64_t job, frame; // position of the current job and frame in their lists, 1 ..
     glint_plan *plan; // plan of the current frame
     glintL_order order; // order of the current job

@@ -8,9 +8,9 @@
 
 #define RESOLVED 10 // times the reference's own error: larger errors are resolved
 #define CANDIDATES_MAX 4096
-#define CLEARLY 0.95 // share of the time or error at which a knob is combined with others
-#define CHEAPER 0.8 // share of the time at which a step that loses accuracy is advised
-#define STEEP 0.8 // share of the best gain per time from which the smallest step is advised
+#define CLEARLY 0.95 // a knob is combined with others if it has less than this share of the time or error
+#define CHEAPER 0.8 // a step that loses accuracy is advised if it takes less than this share of the time
+#define STEEP 0.8 // of the steps worth at least this share of the best one, the fastest is advised
 
 static double range_of(const cost_case *a, const cost_case *b)
 {
@@ -220,7 +220,7 @@ static double worth(const cost_study *study, const cost_row *row)
     return row->difference == 0 ? 1e3 * e : log(e) / log(fmax(t, 1.01)); // 1e3: more accurate at no cost
 }
 
-// Returns the smallest step among those with nearly the best value.
+// Returns the fastest step among those with nearly the best value.
 static const cost_row *find_step(const cost_study *study)
 {
     const cost_row *step = NULL;

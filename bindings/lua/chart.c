@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
-static const char CHARTS; // address used as the registry key for the charts by list of series
+static const char CHARTS; // address used as the registry key for a table from lists of series to their charts
 
 typedef struct series {
     char label[GLINT_CHART_TEXT_SIZE];
@@ -115,7 +115,8 @@ static int release(lua_State *L)
     return 0;
 }
 
-// Stores a reference to a chart that the list of series at `index` keeps alive. Returns its place.
+// Makes space for a chart's reference, which lives as long as the list of series at `index`. Returns the space, NULL at
+// first.
 static glint_chart **keep(lua_State *L, int index)
 {
     glintL_push_weak_table(L, &CHARTS, "k");

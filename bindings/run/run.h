@@ -302,10 +302,10 @@ struct glintL_run {
     uint64_t clipped, pixels, nonfinite; ///< totals of the reported frames
     bool finds_range; ///< the run also measures the pass that is scaled for viewing
     double range[2]; ///< range of that pass's values
-    glint_brightness brightness; ///< of data pictures; in a measuring run, of all with integer values
+    glint_brightness brightness; ///< brightness of data pictures; in a measuring run, of all pictures with integer values
     int64_t point, point_count; ///< number of the --sweep point, 1 .. point_count; 0 of 0: no sweep
     int64_t point_first; ///< frames numbered before this point
-    int64_t earlier; ///< lists of jobs already run
+    int64_t earlier; ///< number of job lists already run
     bool is_stopped; ///< glintL_stop_script ended the script
     double since_ms; ///< when the last call returned
     bool in_frame; ///< a frame function is running

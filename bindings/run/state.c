@@ -125,7 +125,7 @@ bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *
     va_start(args, format);
     vsnprintf(run->message, sizeof run->message, format, args);
     va_end(args);
-    // An untrusted script has a memory limit.
+    // An untrusted script has a memory limit, so exceeding it is a mistake of the script.
     const bool is_short = run->request.is_untrusted && strstr(run->message, "out of memory");
     run->exit_code = is_short ? GLINTL_EXIT_USAGE : exit_code;
     run->failed_index = index;

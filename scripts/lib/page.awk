@@ -16,8 +16,8 @@ function flush_text(    i) {
 BEGIN {
     print "# Modules in Lua"
     print ""
-    print "Readers of data, and what makes scenes of it. `local xyz = require \"glint.xyz\"` and so on; the installed command finds them"
-    print "by itself. This page is made of the modules' own comments."
+    print "These modules read data and make scenes from it. A script loads a module with `local xyz = require \"glint.xyz\"`."
+    print "The installed command finds the modules automatically. This page is generated from the comments of the modules."
 }
 FNR == 1 {
     print "\n## " name_of(FILENAME) "\n"
@@ -35,7 +35,7 @@ head && /^--( |$)/ {
 }
 head { head = 0 }
 /^---@(param|return)/ {
-    kind = $0 ~ /@return/ ? "gives " : ""
+    kind = $0 ~ /@return/ ? "returns " : ""
     line = $0
     sub(/^---@(param|return) +/, "", line)
     if (count && text[count] !~ /^- /)

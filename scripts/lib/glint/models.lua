@@ -1,8 +1,8 @@
 -- Reflection models as shaders: each returns the light reflected from one lamp, the diffuse and the specular part.
 --     local models = require "glint.models"
 --     glint.material { diffuse = 0.6, specular = 0.4, model = models.ward { along = 0.1, across = 0.4 } }
--- As in the built-in models, a light of strength 1 along the normal leaves kd of a matt surface: a BRDF f from the
--- literature becomes pi f (n.l). Shadows and ambient light are the engine's.
+-- As in the built-in models, a matt surface shows kd under a light of strength 1 along the normal: a BRDF f from the
+-- literature becomes pi f (n.l). The engine adds shadows and ambient light.
 local glint = require "glint"
 
 local models = {}

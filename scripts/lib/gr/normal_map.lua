@@ -1,7 +1,7 @@
 -- Normal maps: red along u, green along v, blue outward, -1 .. 1 over the range of pixel values.
 --
--- A bump's normal follows from the slopes of a height. The slopes of the map come from a height with constants at each
--- point: floor has slope 0, so the slope of floor(a) x is floor(a). Heights and directions are in world space.
+-- A bump's normal follows from the slopes of a height, but the map gives the slopes themselves. As floor has slope 0,
+-- the slope of floor(a) x is floor(a): this makes a height with any slopes. Heights and directions are in world space.
 local check = require "gr.check"
 local glint = require "glint"
 check.own_source()
@@ -9,7 +9,7 @@ local normal_map = {}
 
 local tonumber, tostring = tonumber, tostring
 
-local STEPS = 1 << 20 -- steps of a constant between whole numbers
+local STEPS = 1 << 20 -- number of steps of a slope between whole numbers
 local FLAT = 0.02 -- least outward component of a normal
 local AXES = { x = { 1, 0, 0 }, y = { 0, 1, 0 }, z = { 0, 0, 1 } }
 
