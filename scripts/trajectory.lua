@@ -1,4 +1,4 @@
--- A trajectory, frame by frame: particles in the cell they repeat in, with axes along it, coloured by a column.
+-- A trajectory, frame by frame: particles in their periodic cell, with axes along the cell, coloured by a column.
 --     glint scripts/trajectory.lua -o film.mp4                             a wave runs through a crystal
 --     glint scripts/trajectory.lua --set file=melt.dump --set column=c_pe --set map=magma --set low=-7 --set high=-5
 --     glint scripts/trajectory.lua --set file=run.xyz -f 90                one frame; earlier frames are skipped once

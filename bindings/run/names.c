@@ -11,7 +11,7 @@
 
 #define DIGITS_MAX 18 // digits of a number, at most
 
-// A placeholder for the number in a pattern, which begins with '%' or '#'.
+// A placeholder for the number in a pattern. The placeholder begins with '%' or '#'.
 typedef struct placeholder {
     size_t length; // length in the pattern; 0: invalid
     int digits; // -1: an escaped '%' or '#'

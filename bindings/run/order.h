@@ -27,8 +27,8 @@ typedef struct glintL_order {
 
 /// Makes an order with one frame and no axes.
 void glintL_order_init(glintL_order *order);
-/// Adds an axis that changes more slowly than those before it, until glintL_order_find. The caller makes sure that
-/// there is space.
+/// Adds an axis. Until glintL_order_find is called, it changes more slowly than the axes added before it. The caller
+/// makes sure that there is space.
 glintL_order_axis *glintL_order_add(glintL_order *order, int64_t count);
 /// Returns whether several axes have several values.
 bool glintL_order_is_grid(const glintL_order *order);

@@ -5,8 +5,8 @@
 
 #include "bindings/run/film.h"
 
-// Limit for pictures waiting to be encoded, and for files waiting to be written. With the picture being encoded and the
-// one being rendered, these are the four whose memory a renderer retains (render.c).
+// Limit for pictures waiting to be encoded, and for files waiting to be written. Two waiting pictures, the one being
+// encoded and the one being rendered are the four pictures whose memory a renderer retains (render.c).
 #define QUEUE_DEPTH 2
 #define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // for a process with a memory limit
 

@@ -15,7 +15,7 @@
 --   gr.torus(name, tube, ring)                          around the z axis; radii; the ring's is 1 when left out
 --   gr.nh_torus(name, {centre}, ring, tube)             the same
 --   gr.union(name, a, b)  gr.intersection  gr.difference  one solid of two or more; csg_union, intersect, diff ...;
---                                                       name optional; without parts, what add_child gives it
+--                                                       the name is optional; add_child can add the parts
 --   gr.csg(name, a, "+"|"*"|"-", b)  gr.csg(a, b, "diff")  gr.csg(name, "union")  gr.csg(name)  the same
 --   csg:setCSGType("u"|"i"|"d")  csg:set_csg_children(a, b, "UNION"|"INTERSECT"|"DIFFERENCE")  node:add_children(a, b)
 --   gr.material({kd}, {ks}, shininess)
