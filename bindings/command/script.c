@@ -108,7 +108,7 @@ static int refuse_silence(lua_State *L, const cli_options *options)
     else
         lua_pushfstring(L,
                         "%s returned nothing and rendered nothing; expected it to return an animation, a sweep, a "
-                        "scene or a list of them, or to call scene:render",
+                        "scene, a chart or a list of them, or to call scene:render",
                         cli_base_name(options->script));
     return lua_error(L);
 }

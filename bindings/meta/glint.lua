@@ -473,7 +473,8 @@ function glint.colorbar(fields) end
 ---@field extent? number[]  {width, height} of the chart with its numbers and names, points. Default nil: the picture inside the margin
 
 --- Curves over a grid, with numbers and names along two axes. Each label is at the end of its curve. Default `color`
---- 0.02, `background` 1 and `at` "center": a chart on white paper. A scene of a chart alone is a figure of its own.
+--- 0.02, `background` 1 and `at` "center": a chart on white paper. A script may
+--- return a chart; a scene with a chart and no shapes needs no camera.
 ---@class glint.chart: glint.chart_fields, glint.object
 
 ---@param fields glint.chart_fields

@@ -373,7 +373,8 @@ void glintL_warn_of_shutter(glintL_run *run);
 /// Computes a ball around the scene's shapes except planes; false: there are none.
 bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius);
 /// own_camera.c: gives a scene without a camera one that has its shapes in view, with a warning. The scene's userdata
-/// is at `index`. Other values and empty scenes are left unchanged.
+/// is at `index`. A chart without shapes gets any camera, without a warning. Other values and scenes without shapes are
+/// left unchanged.
 void glintL_give_camera(lua_State *L, glintL_run *run, int index);
 void glintL_give_cameras(lua_State *L, int list, glintL_run *run); ///< gives cameras to all jobs at `list` (absolute)
 /// Prints a note about the state that a later run continues from. It is no mistake, so it is no failure under
@@ -524,7 +525,7 @@ void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
 /// Pushes the "name=value" lines for frame n of the sweep at `index`, one per axis.
 void glintL_sweep_push_position(lua_State *L, int index, int64_t n);
 
-/// Makes a list of jobs from a script's result at `index` (a job, a scene, or a list of them). Pushes it and returns
+/// Makes a list of jobs from a script's result at `index` (a job, a scene, a chart, or a list of them). Pushes it and returns
 /// true, or pushes a message and returns false.
 bool glintL_push_jobs(lua_State *L, int index);
 /// Returns the number of frames of the jobs in the list at `index`.

@@ -76,6 +76,19 @@ check "a sheet's title" grep -qF '>Δs &amp; n°</text>' sheet.svg
 check "a transparent sheet, again" cmp once.svg twice.svg
 check "another ending" refuses '.svg, .pdf' figure.lua -o none.ps
 
+cat >chart.lua <<'LUA'
+return require("glint").chart { title = "Powers", x_label = "$x$ / m", x = { 1, 2, 3 },
+  series = { { y = { 1, 4, 9 }, label = "$x^2$" }, { y = { 1, 8, 27 }, label = "cube" } } }
+LUA
+"$glint" -q chart.lua -o chart.svg
+check "a chart by itself" grep -q '>Powers<' chart.svg
+check "a formula names an axis" grep -q '> */ m<' chart.svg
+echo 'local c = dofile "chart.lua" return { c, c }' >two.lua
+"$glint" -q two.lua -o 'two_%d.svg'
+check "a chart in a list" cmp <(grep '<text' two_2.svg) <(grep '<text' chart.svg)
+refuse_overlay() { echo 'return require("glint").label { text = "a" }' >label.lua && refuses 'a scene, a chart or a list' label.lua -o none.svg; }
+check "another overlay is refused" refuse_overlay
+
 if "$glint" --version --verbose | grep -q '\.pdf'; then
     "$glint" -q figure.lua -o a.pdf && "$glint" -q figure.lua -o b.pdf -t 1
     check "a .pdf: the same bytes again" cmp a.pdf b.pdf
@@ -84,7 +97,9 @@ if "$glint" --version --verbose | grep -q '\.pdf'; then
     check "linear values are refused" refuses 'transfer: srgb expected for a .pdf' figure.lua -o none.pdf --transfer linear
     check "a sheet as .pdf" "$glint" -q sheet cell_1.png cell_2.png -o sheet.pdf --title 'Δs & n°'
     "$glint" -q figure.lua -o clear.pdf --alpha -D marks=false
+    check "a chart as .pdf" "$glint" -q chart.lua -o chart.pdf
     if has pdftotext; then
+        check "text of a chart" bash -c 'pdftotext chart.pdf - | grep -qxF Powers'
         check "text of a .pdf" bash -c 'pdftotext a.pdf - | grep -qxF "Fläche <A & B>"'
         check "text of a sheet" bash -c 'pdftotext sheet.pdf - | grep -qxF "Δs & n°"'
         GLINT_FONT=bitmap "$glint" -q figure.lua -o bitmap.pdf

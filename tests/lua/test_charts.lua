@@ -92,5 +92,18 @@ function tests.pictures()
   check(#bytes_of(chart_of({ x = { 0, 1e9 }, y = { 0, 1e9 } }, { x_range = { 1, 2 }, y_range = { 2, 1 } })) > 0, "far outside, downwards")
 end
 
+function tests.without_a_camera()
+  local c = chart_of { y = { 1, 3, 2 } }
+  local path = os.tmpname() .. ".png"
+  local picture = glint.scene { background = "white", c }:render { width = 160, height = 100 }
+  assert(picture:save(path))
+  local file = assert(io.open(path, "rb"))
+  check(file:read "a" == bytes_of(c), "a chart needs no camera, and no camera changes it")
+  file:close()
+  os.remove(path)
+  os.remove((path:gsub("%.png$", "")))
+  raises("camera: the scene has none", function() glint.scene { glint.label { text = "a" } }:render {} end)
+end
+
 tally.run(tests)
 tally.finish()
