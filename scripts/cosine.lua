@@ -32,13 +32,13 @@ local function plate(x, degrees)
     scene:add(glint.line { from = { foot.x, 2.6, 0 }, to = foot, color = warm, width = 1 })
   end
   scene:add(glint.line { from = p - half * along, to = p + half * along, color = warm, width = 4 })
-  scene:add(glint.arrow { from = p, to = p + 1.9 * up, label = degrees > 0 and "l" or "l = n", color = warm })
+  scene:add(glint.arrow { from = p, to = p + 1.9 * up, label = degrees > 0 and [[$\hat l$]] or [[$\hat l = \hat n$]], color = warm })
   if degrees > 0 then
-    scene:add(glint.arrow { from = p, to = p + 1.9 * n, label = "n", color = cool })
-    scene:add(glint.arc { at = p, from = up, to = n, radius = 0.95, label = "θ", color = cool })
+    scene:add(glint.arrow { from = p, to = p + 1.9 * n, label = [[$\hat n$]], color = cool })
+    scene:add(glint.arc { at = p, from = up, to = n, radius = 0.95, label = [[$\theta$]], color = cool })
   end
   local left, right = { x - 1, -1.9, 0 }, { x + 1, -1.9, 0 }
-  local value = ("cos %g° = %.2f"):format(degrees, glint.cos(a))
+  local value = ([[$\cos %g^\circ = %.2f$]]):format(degrees, glint.cos(a))
   scene:add(glint.line { from = left, to = right, label = value, color = ink, width = 0.5 })
 end
 

@@ -13,7 +13,7 @@ local P = glint.params {
 local ink, warm, green, cool, pale = "#1d2228", "#b8420f", "#1f6f2b", "#0b5fa5", "#8a7fb5"
 local LENGTH = 2.5
 local scene = glint.scene {
-  camera = glint.camera { eye = { 0, 1.15, 20 }, at = { 0, 1.15, 0 }, projection = "orthographic", height = 5.3 },
+  camera = glint.camera { eye = { 0, 1.05, 20 }, at = { 0, 1.05, 0 }, projection = "orthographic", height = 4.4 },
   ambient = 1, background = "#f7f5f0",
 }
 local stone = glint.material { model = "lambert", diffuse = 0, ambient = "#cfc9bd" }
@@ -33,9 +33,9 @@ local function panel(x, title, material, from, to, other, name, color, angle)
   end
   scene:add(glint.box { min = { x - 1.9, -0.6, -1 }, max = { x + 1.9, 0, 1 }, material = stone })
   scene:add(glint.lobe { point = p, normal = n, to_light = l, material = material, scale = 2.1, color = pale })
-  arrow(l, "l", warm)
-  arrow(n, "n", ink)
-  arrow(v, "v", cool)
+  arrow(l, [[$\hat l$]], warm)
+  arrow(n, [[$\hat n$]], ink)
+  arrow(v, [[$\hat v$]], cool)
   arrow(other, name, color)
   scene:add(glint.arc { at = p, from = from, to = to, radius = 1.5, label = angle, color = color })
   local left, right = { x - 1.9, -0.6, 0 }, { x + 1.9, -0.6, 0 }
@@ -44,7 +44,7 @@ end
 
 local phong = glint.material { model = "phong", specular = 1, shininess = P.shininess }
 local blinn = glint.material { model = "blinn_phong", specular = 1, shininess = 4 * P.shininess }
-panel(-2.35, "Phong: r·v = cos α", phong, r, v, r, "r", warm, "α")
-panel(2.35, "Blinn-Phong: n·h = cos β", blinn, n, h, h, "h", green, "β")
+panel(-2.35, [[Phong: $\hat r\cdot\hat v = \cos\alpha$]], phong, r, v, r, [[$\hat r$]], warm, [[$\alpha$]])
+panel(2.35, [[Blinn-Phong: $\hat n\cdot\hat h = \cos\beta$]], blinn, n, h, h, [[$\hat h$]], green, [[$\beta$]])
 
-return glint.animation { scene = scene, frames = 1, width = 640, height = 360, samples = 4 }
+return glint.animation { scene = scene, frames = 1, width = 640, height = 300, samples = 4 }

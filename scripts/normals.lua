@@ -14,7 +14,7 @@ local SPAN, DEPTH, APART, ARROW = 54, 0.8, 2.5, 0.42
 local clay = glint.material { model = "blinn_phong", diffuse = { 0.30, 0.42, 0.55 }, specular = 0.7,
   shininess = P.shininess }
 local scene = glint.scene {
-  camera = glint.camera { eye = { 0, 5, 12 }, at = { 0, 0.5, 0 }, projection = "orthographic", height = 4.3 },
+  camera = glint.camera { eye = { 0, 5.1, 12 }, at = { 0, 0.6, 0 }, projection = "orthographic", height = 2.9 },
   ambient = 0.25, background = "#f7f5f0",
   glint.directional_light { direction = { 0.45, -1, 1.2 }, intensity = 0.9, shadows = false },
 }
@@ -68,4 +68,4 @@ title(-APART, "flat: each face")
 title(0, "Gouraud: each corner")
 title(APART, "Phong: each point")
 
-return glint.animation { scene = scene, frames = 1, width = 640, height = 360, samples = 16 }
+return glint.animation { scene = scene, frames = 1, width = 640, height = 240, samples = 16 }

@@ -27,18 +27,21 @@ local a = math.rad(P.angle)
 local l = glint.vector(-glint.sin(a), side * glint.cos(a), 0)
 local start = outside and 2.4 or 1.2
 scene:add(glint.path { origin = p + start * l, direction = -l, depth = P.depth, reach = 2, width = 1.8, color = warm })
-scene:add(glint.arrow { from = p + start * l, to = p + 0.55 * start * l, width = 1.8, color = warm })
+local function head(from, to) scene:add(glint.arrow { from = from, to = to, width = 1.8, color = warm }) end
+head(p + start * l, p + 0.5 * start * l)
+head(p, p + 1.1 * (-l):reflect(n))
 scene:add(glint.line { from = p - 1.3 * n, to = p + 1.7 * n, color = ink, width = 1 })
-scene:add(glint.arc { at = p, from = l, to = n, radius = 0.75, label = "α", color = cool })
-local law = outside and "sin α = n sin β" or "n sin α = sin β"
+scene:add(glint.arc { at = p, from = l, to = n, radius = 0.75, label = [[$\alpha$]], color = cool })
+local law = outside and [[$\sin\alpha = n\,\sin\beta$]] or [[$n\,\sin\alpha = \sin\beta$]]
 local sine = from / to * glint.sin(a)
 if sine < 1 then
   local refracted = glint.vector(sine, -side * math.sqrt(1 - sine * sine), 0)
-  scene:add(glint.arc { at = p, from = -n, to = refracted, radius = 0.75, label = "β", color = cool })
+  head(p, p + 1.1 * refracted)
+  scene:add(glint.arc { at = p, from = -n, to = refracted, radius = 0.75, label = [[$\beta$]], color = cool })
 else
   law = "total reflection"
 end
 scene:add(glint.label { text = law, at = { 0.94, 0.08 }, color = ink })
-scene:add(glint.label { text = ("n = %g"):format(P.ior), at_point = { -3.3, -0.5, 0 }, color = ink })
+scene:add(glint.label { text = ("$n = %g$"):format(P.ior), at_point = { -3.3, -0.5, 0 }, color = ink })
 
 return glint.animation { scene = scene, frames = 1, width = 640, height = 360, samples = 1 }

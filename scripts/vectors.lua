@@ -37,14 +37,14 @@ local function arrow(direction, name, color)
   scene:add(glint.arrow { from = p, to = tip, label = name, color = color, size = letters, hidden = "dashed" })
 end
 local ink, warm, green, cool = "#1d2228", "#b8420f", "#1f6f2b", "#0b5fa5"
-arrow(l, "l", warm)
-arrow(r, "r", warm)
-arrow(v, "v", cool)
-arrow(h, "h", green)
-arrow(n, "n", ink)
-scene:add(glint.arc { at = p, from = n, to = l, radius = 0.75, label = "θ", color = warm, size = letters })
-scene:add(glint.arc { at = p, from = n, to = r, radius = 0.75, label = "θ", color = warm, size = letters })
+arrow(l, [[$\hat l$]], warm)
+arrow(r, [[$\hat r$]], warm)
+arrow(v, [[$\hat v$]], cool)
+arrow(h, [[$\hat h$]], green)
+arrow(n, [[$\hat n$]], ink)
+scene:add(glint.arc { at = p, from = n, to = l, radius = 0.75, label = [[$\theta$]], color = warm, size = letters })
+scene:add(glint.arc { at = p, from = n, to = r, radius = 0.75, label = [[$\theta$]], color = warm, size = letters })
 scene:add(glint.line { from = { 0, 0, 0 }, to = p, color = ink, size = letters, hidden = "dashed" })
-scene:add(glint.label { text = "p", at_point = p, color = ink, size = letters })
+scene:add(glint.label { text = "$p$", at_point = p, color = ink, size = letters })
 
 return glint.animation { scene = scene, frames = 1, width = 800, height = 500, samples = 16 }

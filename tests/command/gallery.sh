@@ -2,12 +2,12 @@
 # gallery.sh [check|update]: compares the pictures of scripts/README.md, pixel by pixel, with the scripts' output.
 # Each script must have a picture, and the page must name it. `update` (make gallery) writes the pictures that differ.
 set -u
-export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}
 glint=${GLINT:-$build/glint}
 out=$build/tests/gallery page=scripts/README.md
 mode=${1:-check}
 bad=0
+. tests/command/font.sh
 
 say() { # STATUS NAME
     echo "$1 - $2"
@@ -45,6 +45,8 @@ keep() {
     local name=$1 kept=scripts/pictures/$1.png made=$2
     if "$glint" compare "$kept" "$made" --fail 0 --warn 0 >/dev/null 2>&1; then
         say ok "$name is current"
+    elif [ ! "$pinned" ] && grep -qE 'glint\.(label|arrow|line|chart|axes|colorbar)|sweep' "scripts/$name.lua"; then
+        say ok "$name is not compared, because its letters are of another font"
     elif [ "$mode" = update ]; then
         cp "$made" "$kept"
         echo "$kept: written"
@@ -67,7 +69,7 @@ picture focus --frames 16
 picture furnace
 picture gr_room --dialect gr --samples 4
 picture gr_scene --dialect gr
-picture highlight_angles --size 640x360
+picture highlight_angles --size 640x300
 picture indirect --set samples=32 --frames 3 --samples 4
 picture labels --frames 13
 picture lamps
@@ -82,7 +84,7 @@ picture molecule --set style=sticks
 picture moving_light --frames 31 --samples 4
 "$glint" scripts/sphereflake.lua --set size=3 --set nff="$out/flake.nff" -o none --quiet
 picture nff --set file="$out/flake.nff"
-picture normals --size 640x360
+picture normals --size 640x240
 picture occlusion --frames 2
 picture particle_box --samples 9
 picture penumbra --size 640x360

@@ -6,10 +6,10 @@
 # writes those that differ. The two indented make commands of README.md are not run: this test is part of them.
 set -u
 mode=${1:-check}
-export GLINT_FONT=bitmap # text has the same pixels everywhere
 root=$PWD
 build=${BUILD:-build}
 glint=${GLINT:-$root/$build/glint}
+. tests/command/font.sh
 work=$root/$build/tests/readme
 rm -rf "$work"
 mkdir -p "$work/bin"
@@ -66,6 +66,8 @@ check_pictures() {
         [ -e "$made" ] || made=$folder/${path/_//}
         if glint compare "$made" "$shown/$path" --fail 0 --warn 0 >/dev/null 2>&1; then
             echo "ok - $1: the picture $path"
+        elif [ ! "$pinned" ]; then
+            echo "ok - $1: $path is not compared, because its letters may be of another font"
         elif [ "$mode" = update ]; then
             cp "$made" "$shown/$path"
             echo "$shown/$path: written"
