@@ -32,7 +32,8 @@ local function plate(x, degrees)
     scene:add(glint.line { from = { foot.x, 2.6, 0 }, to = foot, color = warm, width = 1 })
   end
   scene:add(glint.line { from = p - half * along, to = p + half * along, color = warm, width = 4 })
-  scene:add(glint.arrow { from = p, to = p + 1.9 * up, label = degrees > 0 and [[$\hat l$]] or [[$\hat l = \hat n$]], color = warm })
+  local name = degrees > 0 and [[$\hat l$]] or [[$\hat l = \hat n$]]
+  scene:add(glint.arrow { from = p, to = p + 1.9 * up, label = name, color = warm })
   if degrees > 0 then
     scene:add(glint.arrow { from = p, to = p + 1.9 * n, label = [[$\hat n$]], color = cool })
     scene:add(glint.arc { at = p, from = up, to = n, radius = 0.95, label = [[$\theta$]], color = cool })

@@ -27,7 +27,7 @@ local a = math.rad(P.angle)
 local l = glint.vector(-glint.sin(a), side * glint.cos(a), 0)
 local start = outside and 2.4 or 1.2
 scene:add(glint.path { origin = p + start * l, direction = -l, depth = P.depth, reach = 2, width = 1.8, color = warm })
-local function head(from, to) scene:add(glint.arrow { from = from, to = to, width = 1.8, color = warm }) end
+local function head(first, last) scene:add(glint.arrow { from = first, to = last, width = 1.8, color = warm }) end
 head(p + start * l, p + 0.5 * start * l)
 head(p, p + 1.1 * (-l):reflect(n))
 scene:add(glint.line { from = p - 1.3 * n, to = p + 1.7 * n, color = ink, width = 1 })
