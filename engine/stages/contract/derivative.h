@@ -1,7 +1,7 @@
 /// The contract of the stages of derivatives: values and slopes of sixteen points, all in double. Begin with
 /// stages.h.
 ///
-///  The kernels skip terms with a slope of 0. The sign of a zero slope is not defined.
+/// The kernels skip terms with a slope of 0. The sign of a zero slope is not defined.
 #ifndef GLINT_CONTRACT_DERIVATIVE_H
 #define GLINT_CONTRACT_DERIVATIVE_H
 
@@ -63,10 +63,10 @@ typedef struct glint_derivative_points {
 
 /// The results of a material's programs for a group. They modify the fields of glint_derivative_material.
 enum {
-    GLINT_DERIVED_DIFFUSE, ///< three factors of the material's diffuse colour; the next field likewise has factors
-    GLINT_DERIVED_SPECULAR = 3,
-    GLINT_DERIVED_SHININESS = 6, ///< replaces the material's value; so do the next fields
-    GLINT_DERIVED_ALPHA,
+    GLINT_DERIVED_DIFFUSE, ///< three factors of the material's diffuse colour
+    GLINT_DERIVED_SPECULAR = 3, ///< three factors of the specular colour
+    GLINT_DERIVED_SHININESS = 6, ///< replaces the material's shininess
+    GLINT_DERIVED_ALPHA, ///< replaces the material's alpha
     GLINT_DERIVED_COUNT
 };
 
@@ -98,7 +98,7 @@ typedef struct glint_arrival_args {
 /// Unit vectors opposite to the directions of a group's rays.
 typedef struct glint_eyes_args {
     const double *direction; ///< three rows of sixteen
-    const double *more; ///< added to `direction`; NULL: nothing
+    const double *more; ///< added to `direction`; NULL: nothing is added
     double *eye[3]; ///< out
 } glint_eyes_args;
 

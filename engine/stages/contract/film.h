@@ -139,8 +139,8 @@ typedef struct glint_shade_args {
 // not hit, ambient where hit, then each light. The arithmetic: ref/shade.h. GGX and Beckmann use Smith's masking, for
 // Beckmann in the form of B. Walter et al., EGSR 2007. The samples of joined lights are added up first, in order, in
 // float from 0. Products of colours and plane values are computed in double. A highlight is 0 below 2^-40. No light
-// is read for materials of GLINT_PLANE_SHADED. If sum is NULL, the totals start at 0 and each is rounded to float as
-// film, and beauty = ((background + ambient) + diffuse) + specular in float.
+// is read for materials of GLINT_PLANE_SHADED. If sum is NULL, the totals start at 0. Each total is rounded to float
+// and stored in film, and beauty = ((background + ambient) + diffuse) + specular in float.
 
 // ---- resolve: the mean of several samples ----
 
@@ -156,7 +156,7 @@ typedef struct glint_resolve_args {
 // that the frame has
 
 // resolve_samples: does the same as shade for each of `count` samples in turn, with sums that begin at 0, followed by
-// resolve. All samples have `first`, and at most GLINT_LIGHT_CHUNK `lights` in total. The samples share groups,
+// resolve. `first` is set in all samples, which have at most GLINT_LIGHT_CHUNK lights in total. They share groups,
 // active, background, highlights, film and beauty. Groups without an active lane leave film and beauty unchanged.
 // `sum` is not read, and no material is of GLINT_PLANE_SHADED.
 
@@ -222,7 +222,7 @@ typedef struct glint_differences {
 /// top.
 #define GLINT_TONE_FIRST 0x3800u ///< upper bits of 2^-15; the value of smaller floats is 0
 
-/// Avoids most look-ups: an estimate of the pixel value with a fraction, and its error bound.
+/// An estimate of the pixel value, with a fraction, and its error bound. It avoids most look-ups in the table.
 typedef struct glint_tone_fit {
     float knee, slope, base; ///< x < knee: v = slope x + base
     float scale[16], power[6], offset; ///< x >= knee: v = scale[e & 15] P(m) + offset; x = m 2^(e - 127), m in [1,
@@ -242,8 +242,8 @@ typedef struct glint_tone_args {
         ///< fit
     uint8_t *codes; ///< out: red, green, blue of the first lane of group 0
     size_t stride; ///< bytes from one row of pixels to the next. Only bytes of active lanes are written
-    uint64_t *clipped, *nonfinite; ///< in and out: the number of active lanes with a channel > white, and with a
-        ///< channel of beauty that is not finite, is added
+    uint64_t *clipped, *nonfinite; ///< in and out, increased by the numbers of active lanes with a channel above
+        ///< `white`, and with a channel of beauty that is not finite
 } glint_tone_args;
 // The arithmetic: ref/ref.c. A lane is clipped if gain times beauty, in float, is above `white`; NaN counts as 0.
 

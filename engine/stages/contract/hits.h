@@ -34,10 +34,10 @@ typedef struct glint_camera_args {
     void *origin[3], *direction[3]; ///< out, real, orthographic or with a lens: one per ray
 } glint_camera_args;
 // lane i of group (gx, gy):
-//   px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
+//   px = (x0 + 4 gx + i % 4) + offset[0], py = (y0 + 4 gy + i / 4) + offset[1]
 //   sx = 2 px - width, sy = height - 2 py, all computed in double, then rounded to real
-// if `pixel` is set: px = pixel[0][16 g + i] + offset[0], py likewise; `across` holds -0, and `down` holds the whole
-// direction
+// if `pixel` is set: px = pixel[0][16 g + i] + offset[0], py = pixel[1][16 g + i] + offset[1]; `across` holds -0, and
+// `down` holds the whole direction
 // perspective: direction = (forward + sx right) + sy up. The first term is stored in across, the second in down:
 //   component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
 // orthographic: direction = forward, origin = (eye + sx right) + sy up
@@ -46,8 +46,8 @@ typedef struct glint_camera_args {
 
 // ---- cast: the nearest hit of each ray ----
 
-/// The primitives of a table that are visible anywhere in the picture of a camera. The first call computes it, later
-/// calls use it.
+/// The primitives of a table that are visible anywhere in the picture of a camera. The first call computes the view,
+/// and later calls use it.
 typedef struct glint_cast_view {
     _Alignas(64) unsigned char scratch[8128]; ///< private to the kernels
     bool made; ///< false before the first call
@@ -83,8 +83,8 @@ typedef struct glint_cast_args {
 #define GLINT_NEAR_SHARED_EDGE \
     0x1p-10 ///< relative to the scene: a ray that stays in a triangle's plane for longer than this counts as lying in
         ///< the plane
-// in_sight reads only active, geometry, camera and view. false: no ray of the camera's tile can hit anything. Then
-// cast_bundle reads no directions.
+// in_sight reads only active, geometry, camera and view. If it returns false, no ray of the camera's tile can hit
+// anything, and cast_bundle reads no directions.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it if 0 < t < inf and (t < best, or t == best and
 // its id is lower). Index and filter may only reject primitives that the formulas below would miss.
 // The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. The methods, and their reasons:

@@ -30,7 +30,7 @@ typedef enum glint_emission {
     GLINT_EMIT_ALL, ///< each sample is a point light
     GLINT_EMIT_FRONT, ///< each sample is a point light that only emits to the side of its normal
     GLINT_EMIT_RADIANT_FRONT, ///< with the factor cos' / distance^2; each sample only emits to the side of its normal
-    GLINT_EMIT_RADIANT_BOTH, ///< likewise, but each sample emits to both sides
+    GLINT_EMIT_RADIANT_BOTH, ///< with the same factor; each sample emits to both sides
     GLINT_EMIT_CONE ///< a ball with radiance: each lane has its own sample, in the cone in which the lane's point
         ///< sees the ball
 } glint_emission;
@@ -45,8 +45,8 @@ typedef struct glint_light_sample {
     double lower[3], upper[3]; ///< a box around the whole light
     uint32_t emission;
 } glint_light_sample;
-/// Relative to a point's distance from the sphere's centre: a point this close to the surface counts as on the
-/// surface.
+/// A point this close to the ball's surface counts as on the surface. The distance is relative to the point's distance
+/// from the ball's centre.
 #define GLINT_CONE_SLACK_DOUBLE 0x1p-40
 #define GLINT_CONE_SLACK_FLOAT 0x1p-18
 // GLINT_EMIT_CONE: each lane's sample is computed by cone_sample.h, in double even if real is float. A point on the

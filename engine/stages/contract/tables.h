@@ -65,7 +65,7 @@ typedef struct glint_prim {
             uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: flat, with the face's normal; solid:
                 ///< index in solids; combined: index in combined; hull: index in hulls
             uint32_t face; ///< part of a combined solid: a torus is two consecutive parts, 1 for the first interval
-                ///< of a ray inside of it, 2 for the second; a closed mesh likewise is the parts 1 ..
+                ///< of a ray inside of it, 2 for the second; a closed mesh is consecutive parts, numbered 1 ..
                 ///< GLINT_HULL_PARTS; 0: any other solid. Triangle: 1 + index in faces of the plane that it shares
                 ///< with other triangles; 0: it shares none
         };
@@ -277,7 +277,7 @@ typedef struct glint_geometry_table {
     uint32_t unbounded_count;
     double reference[3], scale; ///< scale is a power of two
     double extent; ///< bound of every coordinate and radius, world units
-    bool tori; ///< there are tori
+    bool tori; ///< true: the scene has tori
     const glint_corner_normals *corner_normals;
     const glint_solid *solids; ///< NULL: there are neither solids nor combined solids
     const glint_combined *combined;
@@ -298,7 +298,7 @@ typedef enum glint_highlight {
 /// The kind of highlight that shade computes from this input.
 typedef enum glint_lobe {
     GLINT_LOBE_POWER,
-    GLINT_LOBE_POWER_COSINE, ///< times n.l
+    GLINT_LOBE_POWER_COSINE, ///< the power, times n.l
     GLINT_LOBE_GGX,
     GLINT_LOBE_BECKMANN
 } glint_lobe;
