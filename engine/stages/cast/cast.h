@@ -14,7 +14,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Casts the only candidate of a group: rays that miss it hit nothing. `sphere` is a constant.
+/// Casts the only candidate of a group: rays that miss it hit nothing. sphere, a constant: it is a sphere.
 INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candidate, const bool sphere, int x, int y,
                          unsigned near)
 {
@@ -232,7 +232,8 @@ static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_
         R(cast_prims_as)(tile, false, leaf, node, seen, mask);
 }
 
-/// A node's primitives are tested after the next node has been visited, while their memory is prefetched.
+/// Traverses the index with the tile's rays. A node's primitives are tested only after the next node has been visited,
+/// so that their memory can be prefetched in the meantime.
 static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
 {
     const glint_geometry_table *geometry = tile->args->geometry;

@@ -77,8 +77,8 @@ static void R(stretch_from)(const glint_geometry_table *table, const glint_prim 
     t[1] = r_select(on, r_select(in, out, r_set(-HUGE_VAL)), t[1]);
 }
 
-/// Computes the first or the second interval inside a torus; own, into: as above. Returns whether any ray has this
-/// interval.
+/// Computes the first or the second interval inside a torus; own, into: as in stretch_from. Returns whether any ray
+/// has this interval.
 static bool R(stretch_of_torus)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                                 unsigned own, unsigned into, vr t[2])
 {
@@ -204,7 +204,7 @@ static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_ta
     return any || (own & into);
 }
 
-/// Computes the intervals of all parts. lanes: the lanes of w->lanes that are not finished; from: see above.
+/// Computes the intervals of all parts. lanes: the unfinished lanes of w->lanes; from: as in stretches_of_hull.
 static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                               unsigned lanes, vr from, R(stretches) * s)
 {
@@ -296,15 +296,16 @@ INNER rm R(in_before)(const vr stretch[2], vr t) { return rm_and(r_lt(stretch[0]
 
 INNER rm R(in_after)(const vr stretch[2], vr t) { return rm_and(r_le(stretch[0], t), r_lt(t, stretch[1])); }
 
-/// Lowers *best to an end of an interval if that end is beyond `from` and nearer, and `mask` equals `is`.
+/// Lowers *best to t, an end of an interval, in the lanes of `ends` in which t is beyond `from` and nearer than *best,
+/// and `mask` equals `is`.
 INNER void R(nearer_end)(vr t, vr from, rm ends, rm mask, const bool is, vr *best)
 {
     const rm ahead = rm_and(r_lt(from, t), ends);
     *best = r_min(r_select(is ? rm_and(ahead, mask) : rm_andnot(ahead, mask), t, r_set(HUGE_VAL)), *best);
 }
 
-/// Returns the first change of a combination of two parts; operation: a constant. At an end of one part's interval,
-/// it depends on whether the ray is inside the other part whether the whole changes.
+/// Returns the first change of a combination of two parts; operation: a constant. Whether the whole changes at an
+/// end of one part's interval depends on whether the ray is inside the other part.
 INNER vr R(first_of_two)(const uint8_t operation, const vr a[2], const vr b[2], vr from)
 {
     const bool both = operation == GLINT_COMBINE_INTERSECTION, less = operation == GLINT_COMBINE_DIFFERENCE;

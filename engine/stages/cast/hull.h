@@ -23,7 +23,7 @@ typedef struct R(crossings) {
     uint32_t triangle[HULL_CROSSINGS_MAX]
                      [2]; ///< at that t, the first triangle through which the ray enters, and the first one through
         ///< which it leaves; GLINT_MISS: none
-    uint32_t begun[2]; ///< likewise, for triangles that the ray starts on
+    uint32_t begun[2]; ///< the same for crossings at the ray's origin
     real lost; ///< the nearest crossing that could not be stored; inf: none
 } R(crossings);
 

@@ -147,8 +147,8 @@ INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * le
     return R(is_in_plane)(&flat, ray_origin, false);
 }
 
-/// Corrects the hits of the pairs from number i on: decides triangles that share their planes with others again;
-/// `through`: lanes whose rays pass between the edges.
+/// Decides again the pairs from number i on whose triangles share their planes with others. through: lanes whose rays
+/// pass between the edges; hits: lanes that hit so far. Returns the lanes that hit.
 INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, bool own, int i, unsigned through,
                                unsigned hits)
 {
@@ -169,8 +169,8 @@ INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, b
     return hits;
 }
 
-/// Stores hits that are nearer than all previous hits. near: only for hits up to this distance, a ray may start in
-/// the triangle's plane.
+/// Stores hits that are nearer than all previous hits. near: a hit up to this distance may be the start of a ray in the
+/// triangle's plane, and then does not count.
 INNER void R(update_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool own, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;

@@ -45,7 +45,7 @@ INNER vr R(exact_c)(const vr f[3], const glint_prim *prim)
     return R(exact_power)(f, r_set(glint_sphere_r2(prim)), r_set(glint_sphere_r2_low(prim)));
 }
 
-/// a r^2 - |f x d|^2
+/// Returns the discriminant a r^2 - |f x d|^2. ar2: a r^2.
 INNER vr R(discriminant_afar)(const vr f[3], const vr d[3], vr ar2)
 {
     vr x = f[1] * d[2] - f[2] * d[1], y = f[2] * d[0] - f[0] * d[2], z = f[0] * d[1] - f[1] * d[0];

@@ -18,7 +18,7 @@
 #include "engine/stages/simd/real.h"
 
 #define GLINT_ROUND_PAIRS 96 ///< maximum number of pairs per round, a multiple of any VR
-#define GLINT_ROUND_SOLIDS 64 ///< per round
+#define GLINT_ROUND_SOLIDS 64 ///< maximum number of solids per round
 #define GLINT_STACKED_NODES_MAX 48 ///< maximum number of nodes that a group leaves to each of its rays, see together.h
 
 /// The rays of a group in triangle space: their components are in the cyclic order that puts the direction's largest
@@ -32,7 +32,7 @@ typedef struct R(permuted_rays) {
 /// The nodes that a ray has yet to visit, and the distances at which the ray enters them.
 typedef struct R(node_stack) {
     int height;
-    /// With space for the entries behind the packed
+    // A packed store writes a whole vector: both arrays have space for its undefined entries above the top.
     uint32_t node[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX];
     float depth[WALK_STACK + GLINT_NODE_WIDTH + GLINT_STACKED_NODES_MAX];
 } R(node_stack);
@@ -90,8 +90,8 @@ static inline void R(load_round)(const glint_geometry_table *geometry, R(rounds)
     }
 }
 
-/// Returns the lanes whose rays certainly start off the triangle's plane. The bound of intersect_shared_edge applies:
-/// the bound is twice the rounding error of a height, so it also covers the different order of terms here.
+/// Returns the lanes whose rays certainly start off the triangle's plane. The error bound is the same as in
+/// intersect_shared_edge: twice the rounding error of a height, which also covers the different order of terms here.
 static inline unsigned R(begins_off_plane)(const glint_geometry_table *table, vr corner[3][3], const vr o[3])
 {
     const vr scale = r_set(table->scale), far = r_set((real)(2 * GLINT_POINT_SLACK * table->extent));

@@ -154,9 +154,9 @@ static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const r
            1;
 }
 
-/// For a ray that starts on `from` and at t = `t` is within rounding in both planes, returns whether it passes
-/// through `other`: `other` extends to the side that the ray goes to, and the ray leaves the side of `other` that
-/// `from` is on.
+/// Returns whether a ray passes through `other`. The ray starts on `from`, and at t = `t` it is in both planes within
+/// rounding. It passes through if `other` extends to the side that the ray goes to, and the ray leaves the side of
+/// `other` that `from` is on.
 static inline bool R(goes_through)(const R(flat) * from, const R(flat) * other, const real o[3], const real d[3],
                                    real t, real slack, double scale)
 {

@@ -11,8 +11,8 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// Finds the groups with rays that come near the primitive. Returns the number of these groups. rods, a constant: the
-/// primitive may be longer than wide.
+/// Finds the groups with rays that come near the primitive. Returns the number of these groups. rods, a constant:
+/// whether the primitive may be longer than wide.
 INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, const glint_node *node,
                               const node_on_screen *seen, int slot, const bool rods, R(near_group) * out)
 {

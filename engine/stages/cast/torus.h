@@ -207,7 +207,7 @@ static inline rm R(torus_ahead)(const R(torus_line) * l, int stretch)
 /// One stretch for each line.
 typedef struct R(torus_stretch) {
     vr low, high, middle; ///< its ends; the lowest turning point, which is one of the ends
-    vr gap; ///< Q there
+    vr gap; ///< the quartic at `middle`
     rm rising;
 } R(torus_stretch);
 

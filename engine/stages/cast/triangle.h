@@ -251,8 +251,8 @@ static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const
     return plane;
 }
 
-/// Returns the lanes whose points, which lie in the triangle's plane, the triangle separates from the light: the
-/// point touches the triangle, and the light is on the side away from the viewer, where `ray` came from.
+/// For points in the triangle's plane, returns the lanes in which the triangle separates the point from the light: the
+/// point touches the triangle, and the light is not on the viewer's side. ray: the directions of the viewer's rays.
 static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(ray_edges) * edges,
                                      const R(triangle_plane) * plane, vr slack, double scale, const vr ray[3])
 {
@@ -278,7 +278,7 @@ static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(ray_edge
     return parts;
 }
 
-/// Tests segments from points of another surface.
+/// Returns the segments, from points of other surfaces, that the triangle blocks.
 static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr point[3], const vr d[3], vr slack,
                                     const R(triangle_plane) * plane, const vr ray[3])
 {

@@ -57,7 +57,7 @@ typedef struct R(tile_cast) {
 typedef struct R(candidate) {
     const glint_prim *prim;
     uint32_t id;
-    real f[3], c; ///< see R(offset) and R(offset_constant)
+    real f[3], c; ///< computed by R(offset) and R(offset_constant)
     real scale, r2; ///< scale and squared radius of a sphere, see glint_sphere_scale
     float base[3], along_s[3],
         along_t[3]; ///< coefficients of the filter's function, which is linear in s and t: f x d for a sphere, e for

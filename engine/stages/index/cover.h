@@ -118,9 +118,9 @@ INNER float R(edge_sway)(const R(candidate) * candidate, int j)
     return 4 * (fabsf(candidate->along_s[j]) + fabsf(candidate->along_t[j]));
 }
 
-/// Returns the groups in which all rays pass a round candidate within `inner`, where f x d is v in the middle. |f x
-/// d|^2 - inner^2 |d|^2 changes towards a corner by at most its slope and its curvature. Along a horizon both terms
-/// grow at the same rate.
+/// Returns the groups in which all rays pass a round candidate within `inner`. v: f x d in the middle of each group.
+/// |f x d|^2 - inner^2 |d|^2 changes towards a corner by at most its slope and its curvature. Along a horizon both
+/// terms grow at the same rate.
 INNER unsigned R(filled_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, const vf v[3])
 {
     const vf inner = f_set(candidate->inner), inner2 = inner * inner, around = f_set(candidate->around);

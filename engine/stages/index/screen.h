@@ -30,8 +30,8 @@ typedef struct screen_view {
     float far; ///< maximum w of anything that can be visible
     float stretch; ///< upper bound of (length of a ray / its extent along w)^2
     float reach,
-        reach_of_numbers; ///< error bound of a ray at a surface: the first number, plus the second number times the
-            ///< size of the surface's coordinates
+        reach_of_numbers; ///< error bound of a ray at a surface: `reach`, plus `reach_of_numbers` times the size of
+            ///< the surface's coordinates
     float weight[2], area; ///< squares of `unit`, and the root of their product
     float root_stretch, spread; ///< root of `stretch`; upper bound of the length of a screen position, at k = 1
     float corner_slack, drift; ///< like slack, for corners relative to the exact origin: corner_slack holds

@@ -10,7 +10,7 @@
 #include "engine/stages/index/walk.h"
 #include "engine/stages/simd/real.h"
 
-/// The capacity of glint_cast_view.
+/// The contents of `scratch` in glint_cast_view.
 typedef struct R(cast_view) {
     bool few; ///< true: all primitives are candidates; false: the other fields are not set
     int count;

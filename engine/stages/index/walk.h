@@ -69,7 +69,7 @@ typedef struct light_bounds {
 typedef struct light_shaft {
     float lower[3], upper[3]; ///< the bounding box of the shaft; infinite where it is unbounded
     int plane_count;
-    int axis[6][2]; ///< the normal of each plane lies in one coordinate plane:
+    int axis[6][2]; ///< for each plane, the two axes of the coordinate plane that its normal lies in
     float normal[6][2], bound[6]; ///< points inside the shaft have normal . x <= bound
 } light_shaft;
 
