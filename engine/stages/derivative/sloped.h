@@ -1,4 +1,4 @@
-// The vector vocabulary of derivatives: numbers with their slopes. If `level` is a constant for the compiler, it
+// The vector vocabulary of derivatives: numbers with their slopes. Where `level` is a constant, the compiler
 // removes the code for slopes that are 0. s_keep makes `level` a constant where branches join.
 #ifndef GLINT_DERIVATIVE_SLOPED_H
 #define GLINT_DERIVATIVE_SLOPED_H

@@ -1,5 +1,5 @@
-// resolve and resolve_samples: the mean of several samples, of sums in memory, or shaded in the same pass with sums in
-// registers or in memory for one group. Contract: stages.h.
+// resolve: the mean of several samples, from sums in memory. resolve_samples: the same, but the samples are shaded in
+// the same pass, and their sums are in registers, or in memory for one group. Contract: stages.h.
 #ifndef GLINT_FILM_RESOLVE_H
 #define GLINT_FILM_RESOLVE_H
 
@@ -99,8 +99,8 @@ static inline void mean_lights(sample_count count, const material_lanes *m, int 
     }
 }
 
-/// Returns whether every sample shows the same material in every lane of the group at `at`, without planes. Begins
-/// with this material.
+/// Returns whether every sample shows the same material in every lane of the group at `at`, without planes. If so,
+/// begins with this material.
 static inline bool begin_whole(const glint_shade_args *sample, uint32_t count, light_colors *colors, size_t at,
                                material_lanes *m)
 {

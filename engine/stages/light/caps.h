@@ -64,7 +64,7 @@ static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light
 }
 
 /// Returns the share of one cap that lies inside another cap. ss, cs: sine and cosine of half the first cap's radius;
-/// sa, ca: likewise of the other cap; sg, cg: of half the angle between the centres.
+/// sa, ca: of half the other cap's radius; sg, cg: of half the angle between the centres.
 static inline vr R(covered_part)(vr ss, vr cs, vr sa, vr ca, vr sg, vr cg)
 {
     const vr zero = r_set(0), one = r_set(1), two = r_set(2);

@@ -74,8 +74,7 @@ static inline vd R(aim_in_cone)(const R(cone) * cone, vd u, vd cosine, vd sine, 
     return d_select(cone->within, inside, (cone->distance * cone->before) / far);
 }
 
-/// Computes the samples in `light_sample`, `count` of them, for the points of the group at `at`, and stores them in
-/// the set.
+/// Computes the `count` samples of `light_sample` for the points of the group at `at`, and stores them in `set`.
 static __attribute__((noinline)) void R(place_in_cone)(const glint_light_sample *const light_sample[], uint32_t count, double scale,
                              const void *const point[3], const void *const normal[3], size_t at,
                              R(light_sample_set) * set)

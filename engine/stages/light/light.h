@@ -64,8 +64,9 @@ INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
     return r_lt(r_set(0), rv);
 }
 
-/// Computes (n.h)^2 likewise, from the same h in num and den. At grazing light h is a difference with few digits
-/// left: if it were rounded differently in num and den, the error would grow by 1 / |h|^2, and then by the shininess.
+/// Computes (n.h)^2 as num / den, both from the same h. Returns the lanes with a highlight. At grazing light h is a
+/// difference with few digits left: if it were rounded differently in num and den, the error would grow by 1 / |h|^2,
+/// and then by the shininess.
 INNER rm R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a, vr *num, vr *den)
 {
     const vr w = r_sqrt(l2 * a);
@@ -157,8 +158,8 @@ INNER vf R(attenuate)(const glint_light_args *args, const int kind, const bool r
     return f_min(R(join)(w), f_set(GLINT_ATTENUATION_MAX));
 }
 
-/// Computes light or sample s at the points of the lanes from i on, of which it reaches `open`. Constants: kind;
-/// glossy: some lane may have a highlight.
+/// Computes light or sample s at the points of the lanes from i on. open: the lanes to compute, which have a
+/// point that no occluder is known to hide completely. Constants: kind; glossy: whether some lane may have a highlight.
 INNER R(lit_lanes) R(light_lanes)(const glint_light_args *args, const int kind, const bool glossy, uint32_t s,
                                   const R(light_sample_set) * samples, const R(gloss) * gloss, const R(lit_points) * p,
                                   int i, unsigned open)
@@ -256,7 +257,7 @@ INNER void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned rest,
     }
 }
 
-/// Loads the points of the lanes from i on; glossy: with their directions.
+/// Loads the points of the lanes from i on and, if `glossy` is set, the rays that hit them.
 INNER void R(load_points)(const glint_light_args *args, R(group_cursor) cursor, int i, const bool glossy,
                           R(lit_points) * p)
 {

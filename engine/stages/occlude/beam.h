@@ -60,12 +60,11 @@ static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *see
     return mask | edge_on;
 }
 
-/// The side from which a point must be seen so that the point's own triangle blocks the light, as in `own` of the
-/// beam. any: the light's side is uncertain in float.
+/// The side from which a point must be seen so that the point's own triangle blocks the light.
 typedef struct own_side {
-    uint32_t id;
-    uint32_t side;
-    bool any;
+    uint32_t id; ///< the triangle
+    uint32_t side; ///< BEAM_BACK: from behind; 0: from the front
+    bool any; ///< true: float cannot decide on which side the light is
 } own_side;
 
 #endif

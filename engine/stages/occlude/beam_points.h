@@ -26,7 +26,7 @@ typedef struct R(beam_batch) {
 
 #define GLINT_BEAM_RUNS 128 ///< if there are more runs, pairs are made before the next triangle
 
-/// The points, of VF consecutive points in the beam, that a primitive may block.
+/// The points that a primitive may block, out of VF consecutive points in the beam.
 typedef struct R(near_points) {
     uint16_t first, near;
     uint16_t own, slot; ///< for a triangle: the points that are on it, and the slot of the triangle

@@ -195,7 +195,8 @@ static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_gro
 
 static inline rm R(either)(rm mask, rm a, rm b) { return rm_or(rm_and(mask, a), rm_andnot(b, mask)); }
 
-/// Tests one vector of segments: from f relative to the sphere's centre, with its c, along d.
+/// Returns which segments of a vector a sphere blocks. f: from the sphere's centre to the start of the segment; c:
+/// |f|^2 minus the squared radius; d: direction.
 static inline rm R(sphere_blocks)(const glint_occlude_args *args, const R(ball) *ball, unsigned outside,
                                   unsigned inside, const vr f[3], vr c, const vr d[3])
 {
@@ -214,7 +215,7 @@ static inline rm R(sphere_blocks)(const glint_occlude_args *args, const R(ball) 
     return R(either)(rm_from_bits(inside), from_outside, blocked);
 }
 
-/// Tests a plane. h: the heights of the points over the plane.
+/// Returns which segments of a vector a plane blocks. h: the heights of the points over the plane.
 static inline rm R(plane_blocks)(unsigned outside, unsigned inside, vr h)
 {
     return rm_or(rm_and(rm_from_bits(outside), r_lt(h, r_set(0))), rm_and(rm_from_bits(inside), r_lt(r_set(0), h)));
@@ -479,7 +480,7 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
     const glint_prim *prim = &args->geometry->prims[occluder.id];
     const unsigned own = lanes_equal(args->prim + group->at, occluder.id) & wanted;
     unsigned others = wanted & ~own, certain = 0;
-    if (prim->kind == GLINT_PRIM_COMBINED) { // its parts have points, itself has none
+    if (prim->kind == GLINT_PRIM_COMBINED) { // points are on its parts, never on the whole
         others = R(stay_in_combined)(args, prim, group->at, others);
     } else if (prim->kind == GLINT_PRIM_TRIANGLE && others) {
         if (!group->made)

@@ -1,7 +1,7 @@
 // occlude: which points a light reaches. Contract: stages.h.
 //
 // A shaft around all segments of the tile lists the occluders. If there are too many, the segments traverse the index
-// as a beam (through_beam.h) or, where there is none, one by one.
+// as a beam (through_beam.h) or, if they cannot form a beam, one by one.
 #ifndef GLINT_OCCLUDE_OCCLUDE_H
 #define GLINT_OCCLUDE_OCCLUDE_H
 

@@ -85,7 +85,7 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
     b.torus = is_torus(geometry, b.prim);
     b.shape = shape_of(node, seen, slot, b.prim, &beam->view);
-    if (GLINT_REAL == 64) // as in cast_slot
+    if (GLINT_REAL == 64) // as in cast_other
         see_rod(geometry, b.prim, &beam->view, &b.rod);
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;

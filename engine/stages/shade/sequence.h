@@ -33,8 +33,8 @@ static inline void flip_drawn(uint32_t x[DRAWN], const uint32_t seed[DRAWN])
 }
 
 /// Computes the second coordinate's bits, lowest first, from the bits of the index. Bit i of the index stands for (1
-/// + x)^i modulo 2. The identity (1 + x)^16 = 1 + x^16 separates the two halves of the bits, then (1 + x)^8 = 1 + x^8
-/// their halves, and so on.
+/// + x)^i modulo 2. The identity (1 + x)^16 = 1 + x^16 separates the two halves of the bits. Then (1 + x)^8 = 1 + x^8
+/// separates the two halves of each half, and so on.
 static inline void second_drawn(uint32_t x[DRAWN])
 {
     for (int i = 0; i < DRAWN; i++) {

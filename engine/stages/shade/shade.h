@@ -123,7 +123,7 @@ INNER void finish_lanes(const material_lanes *m, const bool painted, const bool 
                 sum[c] = f_join(ambient_of(m, true, c, i), ambient_of(m, true, c, i + VD));
             if (!simple)
                 put_float(terms->term[GLINT_TERM_AMBIENT][c], m->lanes, i, sum[c]);
-            sum[c] = f_set(0) + sum[c]; // the sum has the order of finish_terms, of which the first term is 0 here
+            sum[c] = f_set(0) + sum[c]; // in the order of finish_terms, whose first term is 0 here
         }
         for (int k = 0; k < kinds; k++) {
             sum_lights(m, painted, k, i, light);

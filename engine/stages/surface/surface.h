@@ -89,7 +89,7 @@ typedef struct R(seen_slot) {
 /// State while iterating over the groups of a tile.
 typedef struct R(surface_walk) {
     uint32_t only; ///< the only primitive that groups showed so far; GLINT_MISS: none
-    bool several, any_back; ///< true: groups showed other primitives, too; some lane is seen from behind
+    bool several, any_back; ///< several: groups also showed other primitives; any_back: some lane is seen from behind
     R(seen_slot) * last; ///< the slot of the last primitive
     R(seen_slot) slots[SEEN_SLOTS]; ///< indexed by the lowest bits of the primitive's index; only one is used if there
         ///< are only balls and planes, whose constants are computed quickly
