@@ -1,5 +1,4 @@
-// Camera rays, and hits of coherent bundles of rays: rays from one eye, also through pixels at any
-// position.
+// Camera rays, and hits of coherent bundles of rays: rays from one eye, also through pixels at any position.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/pixels.h"

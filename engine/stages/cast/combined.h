@@ -60,7 +60,7 @@ static bool R(stretch_within)(const glint_geometry_table *table, const glint_pri
 }
 
 /// Corrects the intervals of the lanes in `own`, whose rays start on the part: a ray that goes into the part is
-/// inside up to the other side, any other ray is never inside.
+/// inside it up to the other side, and any other ray of `own` is never inside.
 static void R(stretch_from)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
                             unsigned own, unsigned into, vr t[2])
 {

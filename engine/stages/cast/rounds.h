@@ -157,8 +157,9 @@ static inline real R(t_of_face)(const glint_cast_args *args, const glint_face *f
     return R(first_lane)(R(face_t)(face, o, d));
 }
 
-/// Decides the pairs, and lowers the upper bounds of hits. Unless the distance is short, a ray that certainly starts
-/// off the plane of a triangle does not start on that triangle, nor on another one at a shared edge.
+/// Decides the pairs, and lowers the upper bounds of hits. If a ray certainly starts off the triangle's plane, and the
+/// hit is not close, the hit is final: the ray starts neither on this triangle nor on another one at a shared edge.
+/// Other pairs are left to decide_rays.
 static __attribute__((noinline)) void R(decide_triangles)(const glint_cast_args *args, uint32_t g, R(rounds) * rounds)
 {
     const glint_geometry_table *table = args->geometry;

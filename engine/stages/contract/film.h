@@ -26,12 +26,7 @@ typedef struct glint_vertex_args {
     const void *origin[3], *direction[3];
     double *sum[2][3]; ///< in and out: the light is added in wanted lanes; NULL: the frame does not have this term
 } glint_vertex_args;
-// The arithmetic: ref/triangle.h, in double, with the weights of surface.
-
-// caps: the visible share is the product of the shares that the primitives leave visible, starting with 1, in the
-// table's order. If two balls do not touch, the one with the shorter tangent is in front of the other. The
-// arithmetic: ref/caps.h, after C. Oat and P. Sander, "Ambient aperture lighting", I3D 2007. It uses half angles
-// throughout, so that caps of 1e-8 keep their digits. Areas are computed by Gauss-Bonnet, as sectors minus triangles.
+// The arithmetic: ref/triangle.h, in double, with the corner weights that surface uses.
 
 // ---- bounce: reflected and refracted rays ----
 
@@ -152,8 +147,8 @@ typedef struct glint_resolve_args {
     float *film[GLINT_TERM_COUNT][3]; ///< out, or NULL
     float *beauty[3]; ///< out
 } glint_resolve_args;
-// term = (float)(sum / samples); beauty as in shade, then ((beauty + indirect) + mirror) + transmission, of the terms
-// that the frame has
+// Each term is (float)(sum / samples). beauty is computed as in shade, and then is ((beauty + indirect) + mirror) +
+// transmission, with the terms that the frame has.
 
 // resolve_samples: does the same as shade for each of `count` samples in turn, with sums that begin at 0, followed by
 // resolve. `first` is set in all samples, which have at most GLINT_LIGHT_CHUNK lights in total. They share groups,

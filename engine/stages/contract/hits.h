@@ -88,9 +88,9 @@ typedef struct glint_cast_args {
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it if 0 < t < inf and (t < best, or t == best and
 // its id is lower). Index and filter may only reject primitives that the formulas below would miss.
 // The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. The methods, and their reasons:
-//   sphere: from the distance between the line and the centre if the ray begins far away, from b^2 - a c if it begins
-//     close. c is exact, by error-free sums and products, so that points on the surface are distinguished from points
-//     next to it
+//   sphere: the discriminant is computed from the distance between the line and the centre if the ray begins far
+//     away, and as b^2 - a c if it begins close. c is exact, by error-free sums and products,
+//     so that points on the surface are distinguished from points next to it
 //   triangle: edge functions in the plane perpendicular to the ray's longest axis. Neighbours see their common
 //     corners at the same X, Y. Rounding is monotonic, so no edge function of these neighbours has the wrong sign,
 //     and no ray slips through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1) 2013; here without the
@@ -107,9 +107,9 @@ typedef struct glint_cast_args {
 //     the face at t = 0, which does not count. The height is exactly 0 if the face is along two axes of the world,
 //     otherwise it is 0 within rounding. The same holds for the curved sides of solids other than spheres, and for
 //     the plane of a triangle.
-// A ray never hits the primitive that it leaves, with one exception: a ray in an `inward` lane, which starts on or
-// inside of a sphere or a solid other than a disk, always hits it again, at GLINT_LEAST_T or beyond. A ray that
-// leaves a torus outwards can hit it again, too.
+// A ray never hits the primitive that it leaves, with two exceptions: a ray in an `inward` lane, which starts on or
+// inside of a sphere or a solid other than a disk, always hits it again, at GLINT_LEAST_T or beyond; and a ray that
+// leaves a torus outwards can hit the torus again.
 // A ray that leaves triangle A hits another triangle B like any other ray, with two exceptions: the ray lies in both
 // planes within rounding, or it does not cross B and the offset of its origin may have moved it over a common edge.
 // In these two cases the ray hits B if a corner of B is above A on the ray's side, a corner of A is above B on the

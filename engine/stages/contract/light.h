@@ -206,6 +206,11 @@ typedef struct glint_occlude_args {
 //     hits it, given the side on which the segment begins; other solids are convex: if `back` and the light is
 //     outside
 
+// caps: `visible` is the product of the shares that the primitives leave visible, starting with 1, in the table's
+// order. If two balls do not touch, the one with the shorter tangent is in front of the other. The arithmetic:
+// ref/caps.h, after C. Oat and P. Sander, "Ambient aperture lighting", I3D 2007. It uses half angles throughout, so
+// that caps of 1e-8 keep their digits. Areas are computed by Gauss-Bonnet, as sectors minus triangles.
+
 // ---- soft_light: light, occlude and the sums of shade in one stage, for the samples of an area light ----
 
 typedef struct glint_soft_args {

@@ -13,7 +13,7 @@
     ///< each input
 #define GLINT_NUMBER_LANES 16 ///< number of copies of a constant in memory: one per lane of a group
 
-// Where an operand is read, and a result stored.
+// Numbers that say where an operand is read or a result is stored.
 #define GLINT_ROW_INPUT 256u ///< plus one of GLINT_CODE_INPUTS: an input; smaller numbers are the program's own rows
 #define GLINT_ROW_NUMBER 512u ///< plus an index into `numbers`: a constant
 

@@ -161,7 +161,7 @@ INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * c
     return ~fm_bits(f_lt(reach * reach, off2)) & ((1u << VF) - 1);
 }
 
-/// Computes bounds of t of the hits in the groups; the upper one holds where the candidate fills the group.
+/// Computes bounds of t of the hits in the groups. The upper bound only holds in groups that the candidate fills.
 INNER void R(bounds_of_t)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, vf *low,
                           vf *high)
 {

@@ -78,8 +78,9 @@ typedef struct node_on_screen {
 
 /// Computes bounds of the positions of boxes whose k is between nearest and farthest. For a box that reaches the eye,
 /// the bounds are infinite, except that the inner bound of a box to one side of the eye is the box's position at
-/// `farthest`. This requires that the lines of all rays also miss the box behind the eye: for a triangle seen
-/// edge-on, rounding may turn a hit behind the eye into a hit ahead. start, end: bounds of the screen's positions.
+/// `farthest`. That bound is only used if the lines of all rays also miss the box behind the eye, because for a
+/// triangle seen edge-on, rounding may turn a hit behind the eye into a hit ahead. start, end: bounds of the screen's
+/// positions.
 static inline void project_boxes(vf low, vf high, vf nearest, vf farthest, vf start, vf end, vf *least, vf *most)
 {
     const fm ahead = f_lt(f_set(0), nearest);

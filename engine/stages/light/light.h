@@ -158,8 +158,8 @@ INNER vf R(attenuate)(const glint_light_args *args, const int kind, const bool r
     return f_min(R(join)(w), f_set(GLINT_ATTENUATION_MAX));
 }
 
-/// Computes light or sample s at the points of the lanes from i on. open: the lanes to compute, which have a
-/// point that no occluder is known to hide completely. Constants: kind; glossy: whether some lane may have a highlight.
+/// Computes light or sample s at the points of the lanes from i on. open: the lanes that the light may
+/// reach. Constants: kind; glossy: whether some lane may have a highlight.
 INNER R(lit_lanes) R(light_lanes)(const glint_light_args *args, const int kind, const bool glossy, uint32_t s,
                                   const R(light_sample_set) * samples, const R(gloss) * gloss, const R(lit_points) * p,
                                   int i, unsigned open)

@@ -21,7 +21,7 @@ typedef struct R(lit_call) {
     vf brightest;
 } R(lit_call);
 
-/// Stores points, and computes what light_lanes reads of them. n: outward normals. Returns the lanes that are seen
+/// Stores points, and computes the normals and dot products in `p`. n: outward normals. Returns the lanes that are seen
 /// from behind.
 INNER unsigned R(put_part)(R(lit_call) * call, const bool mixed, const bool normals, const vr n[3], size_t at, int j,
                            R(lit_points) * p)
@@ -126,7 +126,8 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
     R(say_brightest)(light, 0, call.brightest);
 }
 
-/// A separate function, so that it takes no registers from the code for spheres and planes.
+/// Processes all groups of a call with triangles or solids. This is a separate function, so that it takes no registers
+/// from the code for spheres and planes.
 static __attribute__((noinline)) void R(lit_mixed)(const glint_surface_args *surface, const glint_light_args *light)
 {
     R(lit_surfaces)(surface, light, true, true);

@@ -1,5 +1,5 @@
-// group: one material's lanes of a group under the lights of a call: the factors of the lights, the reflectances, which
-// are the material's or come from planes, and the sums over lights. Contract: stages.h, shade.
+// group: computes the terms of one material's lanes of a group, under the lights of a call: the factors of the lights,
+// the reflectances (from the material or from planes), and the sums over lights. Contract: stages.h, shade.
 #ifndef GLINT_SHADE_GROUP_H
 #define GLINT_SHADE_GROUP_H
 
