@@ -73,22 +73,22 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
-# Only one file uses it, so that the kernels are not compiled again for it.
+# FreeType, Cairo, libjpeg and libsixel are each used by one file. Only that file gets their flags.
 ifeq ($(call have,freetype2),yes)
   FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
   FONT_LIBS := $(shell pkg-config --libs freetype2)
 endif
-# Likewise for PDF.
+# For PDF files.
 ifeq ($(call have,freetype2 cairo-ft cairo-pdf fontconfig),yes)
   CAIRO_CFLAGS := -DGLINT_HAVE_CAIRO $(shell pkg-config --cflags cairo-ft cairo-pdf fontconfig)
   CAIRO_LIBS := $(shell pkg-config --libs cairo-ft cairo-pdf fontconfig)
 endif
-# Likewise for JPEG textures.
+# For JPEG textures.
 ifeq ($(call have,libjpeg),yes)
   JPEG_CFLAGS := -DGLINT_HAVE_JPEG $(shell pkg-config --cflags libjpeg)
   JPEG_LIBS := $(shell pkg-config --libs libjpeg)
 endif
-# Likewise for drawing in terminals.
+# For drawing in terminals.
 ifeq ($(call have,libsixel),yes)
   SIXEL_CFLAGS := -DGLINT_HAVE_SIXEL $(shell pkg-config --cflags libsixel)
   SIXEL_LIBS := $(shell pkg-config --libs libsixel)
@@ -109,7 +109,7 @@ endif
 OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
 PLAIN := -fno-stack-protector -U_FORTIFY_SOURCE
 # Kernels have line numbers only. Debug information of variables, after so much inlining, takes a third of the time of
-# a compilation and a fifth of its memory. KERNEL_CFLAGS="-O3 -g" has it.
+# a compilation and a fifth of its memory. KERNEL_CFLAGS="-O3 -g" adds it.
 LINES := $(if $(filter -g%,$(CFLAGS)),-g1)
 ifeq ($(SANITIZE)$(WASM),)
   HARDEN      := -fstack-protector-strong $(if $(OPTIMIZED),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
@@ -210,7 +210,7 @@ $$(BUILD)/engine/stages/%.$(1).o: engine/stages/%.c $$(BUILD)/flags | need
 endef
 $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$(real),$(isa),-DGLINT_REAL=$(real)))) \
     $(eval $(call stage_rule,$(isa),$(isa))))
-# The objects of some sources in the archive and in the shared library, which take flags of their own.
+# Some sources need flags of their own. objects_of returns their objects, for the archive and for the shared library.
 objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
@@ -275,7 +275,7 @@ $(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(HARDEN) $(OWN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
 
-# A version script; for Apple's linker a list of names.
+# The list of exported symbols: a version script, or for Apple's linker a list of names.
 $(BUILD)/libglint.map: engine/glint.h
 	@mkdir -p $(@D)
 	@sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/\1/p' $< | sort -u | $(if $(MACOS),sed 's/^/_/', \
@@ -288,7 +288,8 @@ $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 .PHONY: shared
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
-# When flags or libraries change, everything is compiled again. When kernels change, only their table is.
+# When flags or libraries change, everything is compiled again. When only KERNELS changes, only the table of kernels
+# (select.c) is.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS)
 $(BUILD)/flags $(BUILD)/kernels: FORCE
