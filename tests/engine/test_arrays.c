@@ -1,5 +1,5 @@
-// Float image files: .npy against its format, .exr against what the OpenEXR library reads back, both against the
-// planes; and crops and black pictures against the planes of the whole image.
+// Float image files: .npy files are read by their format, .exr files by the OpenEXR library, and the values must equal
+// the planes. Crops and black pictures are compared with the planes of the whole image.
 #include "tests/engine/cases/image_case.h"
 
 #include <stdlib.h>

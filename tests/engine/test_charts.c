@@ -62,7 +62,7 @@ static const glint_ink_mark *find_strokes(const page *p, int number)
 static double middle_x(const glint_ink_mark *text) { return text->box.x + text->box.width / 2.0; }
 static double middle_y(const glint_ink_mark *text) { return text->box.y + text->typeface.height / 2.0; }
 
-/// The points of a curve are at the numbers of the axes, and everything lies on the page.
+/// The points of a curve are where the numbers of the axes put them, and everything lies on the page.
 static void test_positions(void **state)
 {
     (void)state;
@@ -182,7 +182,7 @@ static void test_refuses(void **state)
     assert_string_equal(error.message, "series: curves expected, got NULL");
 }
 
-/// An overlay keeps its chart, and setting it drops the one before.
+/// An overlay retains its chart, and releases it when another chart is set.
 static void test_kept(void **state)
 {
     (void)state;

@@ -90,7 +90,7 @@ static void test_fast_places(void **state)
     free(data);
 }
 
-/// For any bytes, the chosen address gives their bucket.
+/// For any bytes, the stream is mapped at an address whose bucket is the bucket of the bytes.
 static void test_buckets(void **state)
 {
     (void)state;

@@ -310,7 +310,8 @@ static void test_sheet(void **state)
     free(png.codes);
 }
 
-/// Heads of columns, rows and blocks move the pictures by their size and have their ink beside them.
+/// The heads of columns, rows and blocks shift the pictures by the size of the heads, and are drawn next to the
+/// pictures.
 static void test_sheet_heads(void **state)
 {
     (void)state;

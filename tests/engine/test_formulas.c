@@ -1,4 +1,4 @@
-/// Lines with formulas: which dollar signs enclose one, measures computed on paper, spaces between signs, faults. In
+/// Lines with formulas: which dollar signs enclose a formula, sizes computed by hand, spaces between signs, errors. In
 /// the bitmap font at 130 pixels each character is 80 pixels wide, and a script of 91 pixels has characters of 56.
 #include <setjmp.h>
 #include <stdarg.h>
@@ -75,7 +75,7 @@ static void test_dollars(void **state)
     assert_int_equal(line.above, typeface.above);
 }
 
-/// A fraction is as wide as its widest part and the space on both sides; its bar is as wide as the part.
+/// A fraction is as wide as its widest part plus the space on both sides. Its bar is as wide as that part.
 static void test_fraction(void **state)
 {
     (void)state;
@@ -89,7 +89,7 @@ static void test_fraction(void **state)
     const glint_run *low = &line.runs[3];
     assert_true(line.runs[0].y < bar->y && low->y - glint_typeface_box(&(glint_typeface) { .scale = 10 }, low).above > bar->y + bar->height);
     assert_true(line.above > 1.3 * EM && line.below > EM / 2);
-    set("$x^{\\frac{a}{b}}$"); // in a script, parts have the size of its scripts
+    set("$x^{\\frac{a}{b}}$"); // in a superscript, the parts are as small as the superscript's own scripts
     assert_true(line.runs[1].em == 0.5 * EM);
     set("$\\frac{\\frac{a}{b}}{c}$");
     assert_true(line.runs[0].em == SCRIPT && line.runs[2].em == EM);
@@ -109,7 +109,7 @@ static void test_scripts(void **state)
     const double y = line.runs[1].y;
     set("$x_1^2$");
     assert_true(line.runs[2].y == y);
-    set("$\\left(\\frac{a}{b}\\right)^2$"); // at the top of its base
+    set("$\\left(\\frac{a}{b}\\right)^2$"); // a tall base raises its exponent
     assert_true(line.runs[4].y < y);
 }
 
@@ -145,7 +145,7 @@ static void test_spaces(void **state)
         const double width = cases[i].letters * LETTER + cases[i].eighteenths / 18 * EM;
         assert_true(width_of(cases[i].text) >= width - 1e-6 && line.width < width + 1);
     }
-    assert_int_equal(width_of("$x^{a+b=c}$"), (int)ceil(LETTER + 5 * SCRIPT_LETTER + 0.05 * EM)); // none in scripts
+    assert_int_equal(width_of("$x^{a+b=c}$"), (int)ceil(LETTER + 5 * SCRIPT_LETTER + 0.05 * EM)); // no spaces in scripts
 }
 
 static void test_roots_and_accents(void **state)
@@ -163,7 +163,7 @@ static void test_roots_and_accents(void **state)
     }
     set("$\\hat n$");
     const double low = line.runs[1].y;
-    set("$\\hat l$"); // higher above a tall letter
+    set("$\\hat l$"); // the hat is higher above a tall letter
     assert_true(line.runs[1].y < low);
     set("$\\bar{AB}$");
     assert_true(line.rule_count == 1 && line.rules[0].width == 2 * LETTER && line.rules[0].y < -0.7 * EM);

@@ -577,8 +577,7 @@ static void test_occlude_found(void **state)
         glint_precision precision;
         bool odd;
     } found[] = {
-        // a triangle as small as 30 rounding errors: a point that counts as on the triangle is outside the triangle's
-        // box
+        // a triangle as small as 30 rounding errors: a point that counts as on it is outside the triangle's box
         { 1021078, GLINT_DOUBLE, false },
         // a point with a position that is not finite made its cell forget the extent of the cell's other points
         { 3012971, GLINT_FLOAT, true },

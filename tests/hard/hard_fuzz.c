@@ -1,6 +1,6 @@
 /// Adversarial rays: the engine's answers against the oracle's. Casts 1e6 rays when run as a test, and --rays in the
-/// soak. Single spheres and planes, many spheres in one place, pictures of tangent spheres through the frame's own
-/// kernels, and rays that leave surfaces towards a light.
+/// soak. Covers single spheres and planes, many spheres in one place, pictures of tangent spheres through the frame's
+/// own kernels, and rays that leave surfaces towards a light.
 #include "tests/hard/oracle/aim.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/judge.h"
