@@ -65,7 +65,7 @@ function tests.polylines()
   check(#line.points == 2, "and set")
 end
 
--- Hidden parts of polylines: the same pixels as the line that the points divide.
+-- A straight polyline of many pieces hides the same parts as a single line.
 function tests.hidden_pieces()
   local ball = glint.sphere { center = { 0, 0, 1 }, radius = 1, material = glint.material { diffuse = 0 } }
   local from, to, points = vec(-3, -0.5, -1), vec(3, 0.6, -1), {}
@@ -77,7 +77,7 @@ function tests.hidden_pieces()
   end
 end
 
--- The part behind the camera is left out; the rest is where it was.
+-- The part behind the camera is omitted. The rest stays in its place.
 function tests.behind_the_camera()
   local at = draw(scene_of(glint.polyline { points = { { -1, 0, 0 }, { 1, 0, 0 }, { 1, 0, 40 }, { -1, 0, 40 }, { -1, 0, 0 } },
     width = 3 }))
@@ -116,7 +116,7 @@ function tests.lobes()
   end
 end
 
--- The next frame shows a changed material and a changed light; without a normal the surface's is taken.
+-- The next frame shows a changed material and a changed light. Without a normal, the lobe has the surface's normal.
 function tests.lobes_follow()
   local material = glint.material { specular = 1, shininess = 4 }
   local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1, material = material }
@@ -168,7 +168,7 @@ function tests.paths_by_snell()
   end
 end
 
--- Total reflection, mirrors, Fresnel's two rays, and the ends: depth, reach and weak rays.
+-- Total reflection, mirrors, the two rays of Fresnel glass, and what ends a path: its depth, its reach, a weak ray.
 function tests.paths_by_surfaces()
   local glass = glint.material { transmission = 1, ior = 1.5 }
   local slab = glint.box { min = { -9, -1, -9 }, max = { 9, 0, 9 }, material = glass }
@@ -199,7 +199,7 @@ function tests.paths_by_surfaces()
     tostring(zigzag.strokes[64] and zigzag.strokes[64][1]))
 end
 
--- A path moves with the scene, and shows another scene if it is told to.
+-- A path changes with its scene, and shows the rays of another scene when its field `scene` is set.
 function tests.paths_follow()
   local mirror = glint.material { mirror = 1 }
   local ball = glint.sphere { center = { 2, 0, 0 }, radius = 1, material = mirror }

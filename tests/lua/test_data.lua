@@ -733,7 +733,7 @@ function tests.pictures()
   check(not ok and text:find("nothing.xyz: No such file", 1, true), "no file: %s", text)
 end
 
--- From the third light on, lights cost no casts. Pictures equal albedo times n.l of the normal map.
+-- From the third light on, frames reuse the hits and cast no rays. Pictures equal albedo times n.l of the normal map.
 function tests.photometric()
   local ok, text = run(root .. "/scripts/photometric.lua --json --size 64x64 --set lights=7 --set shadows=false " ..
     "--set spread=30 --set exact=true")

@@ -244,7 +244,7 @@ function tests.pictures_of_highlights_and_holes()
   check(image:pixel(36, 21, "specular") == 0, "illum 1 has no highlight")
 end
 
--- A bump map equals the bump pattern that a script would write, in any spelling, with the height of -bm.
+-- A bump map, in any spelling and with the height of -bm, equals the bump pattern that a script would write.
 function tests.reliefs()
   os.execute("mkdir -p " .. folder .. "/sub")
   glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,

@@ -272,7 +272,7 @@ function tests.a_bump_of_a_slope_tilts_the_normal()
   tally.near(lit({ diffuse = 0.8, bump = glint.pattern(function() return 3 end) }, -l), 0.8 * l.y, 1e-6, "a height without slope")
 end
 
--- The constants of a material do not include the ambient light of its pattern: frames must not reuse that light.
+-- The ambient light of a pattern is not in its material's constants: frames with another ambient must not reuse it.
 function tests.ambient_light_changes_what_patterns_show()
   local wave = glint.pattern(function(p) return 0.25 + glint.fract(p.x) / 2 end)
   local shader = glint.shader(function(s) return s.kd end)
