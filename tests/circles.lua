@@ -1,4 +1,4 @@
--- circles.lua OBJECT...: finds cyclic calls between files of the engine, by their symbols: at most 4 files per cycle.
+-- circles.lua OBJECT...: fails if more than 4 files of the engine call each other in a circle, judged by their symbols.
 -- The table of effects (effects/list.c) names all stages so that no other file needs to; its references do not count.
 local MOST <const> = 4
 

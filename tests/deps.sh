@@ -3,9 +3,8 @@
 #   deps.sh need          lists missing packages for the build, and fails if there are any; installs nothing
 #   deps.sh WHAT ...      installs missing packages with apt: build, test, bench (speed comparisons), films (the test
 #                         with ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm),
-#                         arm64
-#                         (the tests under qemu), musl (the tests of a static command), web (the module for browsers),
-#                         fuzz (the fuzzers), package (the test of Debian's source package)
+#                         arm64 (the tests under qemu), musl (the tests of a static command), web (the module for
+#                         browsers), fuzz (the fuzzers), package (the test of Debian's source package)
 set -eu
 
 # package, and a test for its presence

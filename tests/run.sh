@@ -5,8 +5,8 @@
 # number of processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, EMULATOR (the program that
 # runs C tests), TEST_LIMIT_S (for one item). A test exits with 0 when it passes and with 77 when it cannot run here.
 # Its output goes to BUILD/tests/log/NAME and is shown when it fails. Cases are counted from a line of totals like the
-# one here, from cmocka's lines or from TAP; a test that prints none of these counts as one. Tests run in parallel, so
-# each test keeps its files in its own folder.
+# last line of run.sh, from cmocka's lines or from TAP; a test that prints none of these counts as one. Tests run in
+# parallel, so each test keeps its files in its own folder.
 set -u
 
 BUILD=${BUILD:-build}

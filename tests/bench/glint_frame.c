@@ -16,8 +16,8 @@ typedef struct frame_state {
     int frames;
 } frame_state;
 
-/// Renders a frame and returns its milliseconds. If processor_ms is not NULL, *processor_ms gets the processor time,
-/// without the share for pixel values.
+/// Renders a frame and returns its milliseconds. If processor_ms is not NULL, *processor_ms gets the processor time
+/// of rendering only, without building the BVH and converting light to pixel values.
 static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats, double *processor_ms)
 {
     glint_error error;

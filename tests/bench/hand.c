@@ -26,8 +26,8 @@ enum { SPHERE_MAX = 16 };
 
 typedef struct hand_scene {
     int count;
-    float from_eye[SPHERE_MAX][3], eye_power[SPHERE_MAX]; ///< the centre minus the eye; the square of that vector
-        ///< minus the squared radius
+    float from_eye[SPHERE_MAX][3], eye_power[SPHERE_MAX]; ///< the centre minus the eye; the squared length of
+        ///< that vector minus the squared radius
     float center[SPHERE_MAX][3], square_radius[SPHERE_MAX];
     vf x, y, z, inverse_radius; ///< tables with one entry per sphere
     vi material;

@@ -69,8 +69,8 @@ static void put32(uint8_t *out, uint32_t value)
         out[i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
-/// Adds the length, the type and the checksum around the chunk's `length` bytes of data, which are at file + size +
-/// 8.
+/// Adds the length, the type and the checksum around a chunk's `length` bytes of data. The data start at
+/// file + size + 8.
 static void close_chunk(picture_writer *w, const char *type, size_t length)
 {
     uint8_t *chunk = w->file + w->size;

@@ -57,8 +57,8 @@ typedef struct bench_scene {
 ///   workshop                 four balls on a large one
 ///   glassball                the same, one of them of glass
 ///   1k, 1M                   a cloud of 1,000 or 1,000,000 spheres; over1k, over1M: above the top of a large ball
-///   floor100, floor1k, floor1M   spheres on such a floor; mirrorfloor: 1,000 on a mirror; glassfloor: 50, half of
-///   glass
+///   floor100, floor1k, floor1M   spheres on such a floor; mirrorfloor: 1,000 on a mirror;
+///                            glassfloor: 50, half of them of glass
 ///   glass                    24 mirrors, glass and matt spheres on a floor
 ///   cut1k, pieces1k          1,000 boxes minus a ball on such a floor; the same boxes and balls as separate shapes
 ///   tori                     24 tori on such a floor

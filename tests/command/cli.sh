@@ -853,8 +853,8 @@ comparing() {
     clean
 }
 
-# Numbers of a pattern that change separately and together, and a camera that returns: results cached for fewer
-# numbers are used again after memory did not suffice for results with more of them.
+# Two numbers of a pattern change separately and together, and the camera moves away and returns. Results cached while
+# one number changed are used again after memory was too small for results with two changing numbers.
 little_memory() {
     script knobs 'local glint = require "glint"
 local a, b = { x = 0.5 }, { x = 0.3 }

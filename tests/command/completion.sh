@@ -49,7 +49,7 @@ cd - >/dev/null || exit 1
 "$glint" --help | grep -oE -- '--[a-z][a-z-]*' | sort -u >"$work/helped"
 grep -oE 'options="[^"]*"' "$work/bash" | grep -oE -- '--[a-z-]+' | sort -u >"$work/offered"
 check "the options of --help" diff "$work/helped" "$work/offered"
-# The manual page must have a heading for each of them, with the same letter and text, and must list the same passes.
+# The manual page must have a heading for each option, with the same letter and text, and must list the same passes.
 cat >"$work/heads.lua" <<'END'
 local page = io.read "a"
 local options = page:match "\n%.SH OPTIONS\n(.-)\n%.SH "

@@ -153,8 +153,8 @@ JS
     dump pressed.html
 }
 
-# Whether the page shows differences from the chosen picture, before and after ticking its box: of the picture and of
-# the grid.
+# Notes whether the picture and the grid show differences from the chosen picture, before and after the page's box
+# "difference" is ticked.
 differ() { # PAGE
     sed 's|</html>||' "$1" >differing.html
     cat >>differing.html <<'JS'

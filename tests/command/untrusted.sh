@@ -90,8 +90,8 @@ refused "a traced function that only grows" "$late" -o a.png
 # Inside C no hook notices the end of the time: the process is killed.
 slack_ms=1000
 ldd "$glint" | grep -qE 'lib[at]san' && slack_ms=4000
-# in_time MS COMMAND...: runs it; took: its milliseconds. The machine may stall for a second, so a late run is
-# repeated: three late runs in a row are the program's fault.
+# in_time MS COMMAND...: runs the command and sets `took` to its milliseconds. The machine may stall for a second, so a
+# late run is repeated: three late runs in a row are the program's fault.
 in_time() {
     local most_ms=$1 begun
     shift

@@ -1,7 +1,7 @@
 -- vectors.lua PLAIN MARKED DRAWN: compares a drawn vector figure with the .png that it should look like. PLAIN is the
 -- picture without overlays. Prints "the same" if
 --   - pixels that are more than two pixels away from any overlay are equal,
---   - the overlays cover them as in the .png, up to different antialiasing and hinting,
+--   - the other pixels look as in the .png, up to different antialiasing and hinting,
 --   - and no shift of the overlays by a pixel fits better.
 local glint = require "glint"
 local plain, marked, drawn = glint.read_image(arg[1]), glint.read_image(arg[2]), glint.read_image(arg[3])
@@ -33,7 +33,7 @@ for y = 0, height - 1 do
   end
 end
 
--- Returns the sum of differences near overlays if the drawn figure is shifted.
+-- Returns the sum of differences near overlays after a shift of the drawn figure by dx, dy pixels.
 local function differ(dx, dy)
   local sum = 0
   for i in pairs(near) do

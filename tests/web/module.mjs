@@ -1,5 +1,5 @@
-// The module of `make web` in node: pictures have the bits of the command, errors its words, and no script or order of calls
-// stops the page. Run by module.sh, with GLINT and WEB.
+// Tests the module of `make web` in node: its pictures equal the command's bit for bit, its errors have the same text,
+// and no script or order of calls stops the page. module.sh runs this file with GLINT and WEB in the environment.
 import assert from "node:assert/strict"
 import { execFileSync } from "node:child_process"
 import fs from "node:fs"
@@ -40,7 +40,7 @@ const sameBits = (a, b) => a.length === b.length && Buffer.compare(Buffer.from(a
 
 // ---- The pictures of the command ----
 
-// What golden.sh and gallery.sh make: [name, script, options].
+// Returns the pictures that golden.sh or gallery.sh makes, as [name, script, options].
 function pictures(file, pattern) {
   return fs.readFileSync(file, "utf8").split("\n").flatMap(line => {
     const found = pattern.exec(line)
@@ -50,12 +50,12 @@ function pictures(file, pattern) {
 }
 const steps = ["ambient", "diffuse", "specular", "all"].map(step => [`workshop_${step}`, "workshop", ["--set", `step=${step}`]])
 const golden = [...steps, ...pictures("tests/command/golden.sh", /^picture (\w+) scripts\/(\w+)\.lua(.*)$/)]
-const notHere = new Set(["gr_room", "gr_scene"]) // the dialect is the command's
+const notHere = new Set(["gr_room", "gr_scene"]) // only the command has the gr dialect
 const gallery = pictures("tests/command/gallery.sh", /^picture ((\w+))(.*)$/)
 const flake = `${OUT}/flake.nff`
 execFileSync(GLINT, ["scripts/sphereflake.lua", "--set", "size=3", "--set", `nff=${flake}`, "-o", "none", "--quiet"])
 
-// The options of the command as those of open and render.
+// Converts options of the command line to the options of open and render.
 function readOptions(words) {
   const set = {}, options = {}
   for (let i = 0; i < words.length; i += 2) {
@@ -202,7 +202,7 @@ const refused = (promise, file, line, message) => assert.rejects(promise, error 
   return true
 })
 
-// The command says the same of the same script.
+// The command gives the same message for the same script.
 await test("wrong scripts: the words of the command", async () => {
   const wrong = {
     syntax: "local x = = 2", raised: "\n\nerror 'no'", nothing: "return 7", field: ball.replace("shininess", "shinyness"),
@@ -272,7 +272,7 @@ await test("a render is cancelled, and the job goes on", async () => {
   await assert.rejects(job.render({ signal: AbortSignal.abort() }), { name: "AbortError" })
   const stop = new AbortController()
   const [slow, next] = [job.render({ width: 3000, height: 2000, samples: 64 }), job.render({ frame: 5, signal: stop.signal })]
-  stop.abort() // it waits for the one before it
+  stop.abort() // the second render still waits for the first
   await assert.rejects(next, { name: "AbortError" })
   job.close()
   await assert.rejects(slow, GlintError)

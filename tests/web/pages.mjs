@@ -1,6 +1,7 @@
-// The pages in Chromium: pictures against the command's, sliders, errors at their line, no message in the console.
+// Tests the pages in Chromium: pictures equal the command's, sliders work, errors are shown at their line, and the
+// console stays empty.
 //   node pages.mjs WEB GLINT SCRIPTS WORK
-// WEB is what `make web` leaves, GLINT the command, SCRIPTS the folder of scripts, WORK a folder for pictures.
+// WEB is the output folder of `make web`, GLINT the command, SCRIPTS the folder of scripts, WORK a folder for pictures.
 import { execFileSync } from "node:child_process"
 import { createServer } from "node:http"
 import { createReadStream, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs"
@@ -48,7 +49,8 @@ async function open(address, viewport = { width: 1200, height: 800 }) {
   page.setDefaultTimeout(LIMIT_MS)
   page.messages = []
   page.on("console", message => {
-    if (!message.text().includes("willReadFrequently")) page.messages.push(`${message.type()}: ${message.text()}`) // it is the test that reads
+    // "willReadFrequently" is a warning about this test's own reads of the canvas
+    if (!message.text().includes("willReadFrequently")) page.messages.push(`${message.type()}: ${message.text()}`)
   })
   page.on("pageerror", error => page.messages.push(`error: ${error.message}`))
   await page.goto(address)
@@ -78,7 +80,7 @@ function differing(page, canvas, name) {
   }, `${base}/native/${name}`)
 }
 
-// Checks that a canvas comes to show a picture of the command.
+// Waits until a canvas shows a picture of the command, and checks that it does.
 async function shows(page, canvas, name, what) {
   const start = Date.now()
   let count
@@ -229,11 +231,11 @@ async function phone() {
   }
 }
 
-// ---- A published page, from a disk ----
+// ---- A published page, opened from a file ----
 
 const run = (...words) => execFileSync(glint, words, { cwd: work, stdio: "pipe", env: { ...process.env, GLINT_FONT: "bitmap", GLINT_WEB: web, LUA_PATH: "./?.lua" } })
 
-// The 8-bit values of a figure, and of the picture that the command makes of the script.
+// The 8-bit values that a figure shows, and those of the command's picture of the script.
 const codesShown = figure => figure.locator("canvas").evaluate(shown => [...shown.getContext("2d").getImageData(0, 0, shown.width, shown.height).data])
 function codesExpected(page, script, ...words) {
   run(script, "--size", "320x180", "-f", "1", "--force", "--quiet", "-o", "expected_####.png", ...words)
@@ -257,7 +259,7 @@ async function published() {
   await close(page, "published")
 }
 
-// The pages of other commands with --live have the same figure.
+// With --live, the pages of other commands contain the same figure.
 async function live() {
   writeFileSync(join(work, "sweep.lua"), SWEEP)
   run("sweep.lua", "-o", "swept.png", "--live")
