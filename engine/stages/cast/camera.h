@@ -157,8 +157,7 @@ INNER void R(next_group)(const glint_camera_args *camera, R(group_cursor) * curs
     }
 }
 
-/// The directions of one group: sums of a column's vector and a row's vector. If both are NULL, the directions are in
-/// arrays.
+/// The directions of one group: sums of a column's and a row's vector. If both are NULL, the directions are in arrays.
 typedef struct R(group_directions) {
     const real *across, *down;
 } R(group_directions);

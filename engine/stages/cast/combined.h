@@ -21,8 +21,7 @@ typedef struct R(stretches) {
     vr known; ///< t up to which all intervals are known; a mesh may have further intervals beyond
     uint64_t live; ///< bit mask of the parts that have an interval
     uint32_t length; ///< length of the program; 0: these rays hit nothing
-    const uint8_t *program; ///< the program of the whole, or a simplification for these rays, which is stored in
-        ///< `own`
+    const uint8_t *program; ///< the program of the whole, or a simplification for these rays in `own`
     uint8_t own[2 * GLINT_PARTS_MAX];
 } R(stretches);
 

@@ -1,7 +1,7 @@
 // groups: finds the groups of a tile in which a primitive may be visible, by the primitive's cells and depth, and the
 // lanes of these groups whose rays come near the primitive. All groups are tested before the first is decided,
-// without branches on test results: such branches are often mispredicted, which costs more than the tests. Contract:
-// stages.h, cast.
+// without branches on test results: such branches are often mispredicted, which costs more than the tests.
+// Contract: stages.h, cast.
 #ifndef GLINT_CAST_GROUPS_H
 #define GLINT_CAST_GROUPS_H
 

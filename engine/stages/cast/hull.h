@@ -34,8 +34,7 @@ typedef struct R(hull_rays) {
     const vr *o, *d;
     const uint32_t *on; ///< the primitive that each ray starts on; NULL: none
     vr permuted[3]; ///< the direction, with the axes permuted so that its largest component is last
-    rm y, z; ///< lanes in which the direction's largest component is y, and in which it is z; it is x in the other
-        ///< lanes
+    rm y, z; ///< lanes whose direction has y, or z, as its largest component; in the other lanes it is x
     _Alignas(64) real origin[3][VR];
     _Alignas(64) real from[VR]; ///< t up to which crossings were handled before
     ray_view view[VR];
@@ -122,8 +121,7 @@ static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out,
     for (unsigned bits = out | in; bits; bits &= bits - 1) {
         const int i = __builtin_ctz(bits), orientation = out >> i & 1 ? 1 : -1;
         const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
-        bool begun = t[i] == 0; // this is only exact for shared planes; for a ray that starts at an edge, rounding
-            // decides
+        bool begun = t[i] == 0; // this is only exact for shared planes; at an edge, rounding decides
         if (rays->on && rays->on[i] == index)
             continue;
         if ((!prim->face || on_hull) && t[i] <= near && -near <= t[i]) {

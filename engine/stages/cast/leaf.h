@@ -33,8 +33,7 @@ typedef struct R(cast_leaf) {
     _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< the pixels in which each triangle may be visible, in the
         ///< format of screen_cells
     R(near_group) group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the groups in which each triangle may be visible
-    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< for each element of `group`, the slot of the
-        ///< triangle
+    uint8_t slot_of_group[GLINT_NODE_WIDTH * GLINT_TILE_GROUPS]; ///< the triangle's slot, for each element of `group`
     int groups;
 } R(cast_leaf);
 

@@ -133,8 +133,7 @@ static inline void R(set_origins)(const void *const point[3], size_t at, const f
         rays->origin[k] = (const float *)point[k] + (GLINT_REAL == 32 ? at : 0);
 }
 
-/// Computes f, from the sphere's centre to the rays' origins. Returns the distance within which a ray is not
-/// rejected.
+/// Computes f, from the sphere's centre to the rays' origins. Rays within the returned distance are not rejected.
 static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_prim *prim, vf f[3])
 {
 #if GLINT_REAL == 64
@@ -168,8 +167,7 @@ static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
 }
 
 /// Returns the lanes of the group whose rays may enter the box from `lower` to `upper`, in the index's frame.
-/// inverse: one over the components of the directions; its error is relative to the distance of the box along the
-/// ray.
+/// inverse: one over the components of the directions; its error is relative to the box's distance along the ray.
 static unsigned R(rays_to_box)(const R(ray_group) * rays, float (*inverse)[GLINT_GROUP], const float lower[3],
                                const float upper[3])
 {
@@ -221,8 +219,7 @@ INNER void R(update_nearest)(const glint_cast_args *args, size_t at, uint32_t id
     r_put_index(best_id, hit, id);
 }
 
-/// Computes f, the vector from the primitive's centre or point to the ray's origin: scaled for a sphere, unscaled for
-/// a plane.
+/// Computes f, from the primitive's centre or point to the ray's origin: scaled for a sphere, unscaled for a plane.
 static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -232,8 +229,7 @@ static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3]
     }
 }
 
-/// Returns the constant of a primitive for all rays from one origin: c for a sphere, the height of the origin over a
-/// plane.
+/// Returns a primitive's constant for all rays from one origin: c for a sphere, the origin's height over a plane.
 static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
 {
     if (prim->kind == GLINT_PRIM_SPHERE)
@@ -286,8 +282,7 @@ static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
     }
 }
 
-/// Returns the distance of the farthest hit of a group in the index's units, rounded up; infinite if any ray has no
-/// hit.
+/// Returns the distance of a group's farthest hit in the index's units, rounded up; infinite if a ray has no hit.
 static inline float R(farthest)(const glint_cast_args *args, size_t at)
 {
     _Alignas(64) real t[GLINT_GROUP];

@@ -40,8 +40,7 @@ typedef struct R(node_stack) {
 typedef struct R(rounds) {
     R(permuted_rays) permuted;
     _Alignas(64) uint32_t lane[GLINT_ROUND_PAIRS], prim[GLINT_ROUND_PAIRS]; ///< the pairs
-    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< the corners of each pair's triangle, permuted like the
-        ///< pair's ray
+    _Alignas(64) real corner[3][3][GLINT_ROUND_PAIRS]; ///< the corners of the triangles, permuted like the rays
     int count;
     uint32_t solid[GLINT_ROUND_SOLIDS]; ///< primitives other than triangles and spheres
     uint32_t rays[GLINT_ROUND_SOLIDS]; ///< rays that reached each solid, one bit per lane

@@ -207,8 +207,7 @@ INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double m
     span->hit = rm_or(rm_or(steep, rm_and(level, ours)), rm_andnot(r_le(zero, disc), level));
 }
 
-/// Removes the flat ends of a cylinder or cone: a ray that passes through a flat end hits the side once or not at
-/// all.
+/// Removes the flat ends of a cylinder or cone: a ray through a flat end hits the side once or not at all.
 INNER void R(open_ends)(R(span) * span)
 {
     const rm none = rm_from_bits(0);

@@ -18,10 +18,8 @@
 /// Bounds, over all rays of a group, of the values that boxes_of_lone_ray computes. An axis along which the rays have
 /// both signs of direction has no bound.
 typedef struct R(common_slabs) {
-    float enter[3], leave[3]; ///< bounds of the origins, to be subtracted from the box sides by which rays enter and
-        ///< leave
-    float gentle[3], steep[3]; ///< inverse directions with the smallest and the largest magnitude; the largest may be
-        ///< infinite
+    float enter[3], leave[3]; ///< bounds of the origins, subtracted from the box sides by which rays enter and leave
+    float gentle[3], steep[3]; ///< inverse directions with the smallest and the largest size; steep may be infinite
     int first[3], last[3]; ///< offsets in a node, in floats, of the sides by which rays enter and leave
 } R(common_slabs);
 

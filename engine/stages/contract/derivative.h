@@ -26,8 +26,7 @@ typedef struct glint_derivative_light {
     uint32_t directional, is_spot;
     uint32_t attenuated; ///< 1: the light gets weaker with distance
     uint32_t unused; ///< 0: no padding
-    glint_dual position[3]; ///< directional: the unit vector towards the light; area light: the slope is shared by all
-        ///< samples
+    glint_dual position[3]; ///< directional: the unit vector towards the light; area light: all samples share the slope
     glint_dual coefficients[3], diffuse[3], specular[3];
     glint_dual axis[3], outer, inverse, exponent; ///< the cone of a spot, see glint_spot
 } glint_derivative_light;

@@ -20,8 +20,7 @@ typedef struct glint_vertex_args {
     const glint_prim *prims;
     double scale; ///< the table's scale
     const glint_shading_points *shading_points;
-    const glint_shading_point_light *light[2]; ///< the light of each shading point, seen from the front, and from
-        ///< behind
+    const glint_shading_point_light *light[2]; ///< each shading point's light, seen from the front and from behind
     const glint_camera_args *camera; ///< the rays, as in glint_surface_args
     const void *origin[3], *direction[3];
     double *sum[2][3]; ///< in and out: the light is added in wanted lanes; NULL: the frame does not have this term
@@ -35,8 +34,7 @@ typedef struct glint_bounce_args {
     const uint16_t *wanted; ///< one bit per lane
     const glint_camera_args *camera; ///< the rays of a perspective camera; NULL: the directions are in `direction`
     const void *direction[3], *normal[3]; ///< real; the normal as computed by surface
-    const void *ratio; ///< real, > 0: refractive index on the ray's side of the surface divided by the index on the far
-        ///< side
+    const void *ratio; ///< real, > 0: refractive index on the ray's side divided by the index on the far side
     void *reflected[3], *refracted[3]; ///< out, real, of length 1 up to rounding
     void *reflectance; ///< out, real, 0 .. 1: reflectance of a dielectric for unpolarised light
     uint16_t *total; ///< out: the wanted lanes with total internal reflection. Their `refracted` is undefined
@@ -86,8 +84,7 @@ typedef enum glint_term {
 #define GLINT_TERM_LOCAL GLINT_TERM_INDIRECT ///< number of terms that shade computes
 
 typedef struct glint_shade_light {
-    bool joined; ///< this element is another sample of the light of the element before it in this call, with the same
-        ///< colours
+    bool joined; ///< this is another sample of the previous element's light in this call, with the same colours
     const uint16_t *lit; ///< bit mask of the lanes that the light reaches: `lit` of the light stage, or `unoccluded`
         ///< if the light casts shadows
     const float *cosine, *attenuation, *log2_specular; ///< attenuation NULL: 1 everywhere
@@ -158,8 +155,7 @@ typedef struct glint_resolve_args {
 // ---- estimate, range, differ: which neighbouring pixels differ, for adaptive sampling ----
 
 #define GLINT_DIFFER_PAIRS 32 ///< maximum number of pairs per call
-#define GLINT_DIFFER_LENGTH 40 ///< length of each array of a line: the kernels may read all of it, however few pairs
-    ///< there are
+#define GLINT_DIFFER_LENGTH 40 ///< length of each array of a line: kernels may read all of it for any number of pairs
 enum { GLINT_DIFFER_ID, GLINT_DIFFER_NORMAL, GLINT_DIFFER_CODE = 4, GLINT_DIFFER_VALUES = 8 };
 enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFFER_RISING, GLINT_DIFFER_DIRECTIONS };
 
@@ -233,8 +229,7 @@ typedef struct glint_tone_args {
     float gain; ///< > 0: factor of the light
     float white, top; ///< light above `white` is clipped; light above `top` (at most `white`) gets the value of `top`
     const uint32_t *table;
-    const glint_tone_fit *fit; ///< NULL: only the table is used. The pixel values are the same with and without the
-        ///< fit
+    const glint_tone_fit *fit; ///< NULL: only the table is used, which gives the same pixel values
     uint8_t *codes; ///< out: red, green, blue of the first lane of group 0
     size_t stride; ///< bytes from one row of pixels to the next. Only bytes of active lanes are written
     uint64_t *clipped, *nonfinite; ///< in and out, increased by the numbers of active lanes with a channel above

@@ -22,8 +22,7 @@ typedef struct glint_camera_args {
     double width, height; ///< size in pixels of an image that is symmetric around the point where `forward` is seen
     double beyond[2]; ///< by how many pixels the actual image is wider and higher than the symmetric one
     bool orthographic;
-    double eye[3], forward[3], right[3], up[3]; ///< the eye, and three directions; `right` and `up` are half a pixel
-        ///< long
+    double eye[3], forward[3], right[3], up[3]; ///< eye and three directions; `right` and `up` are half a pixel long
     const glint_lens *lens; ///< NULL: all rays of a perspective camera start at the eye
     const double *pixel[2]; ///< column and row of each lane's pixel or, if `offset` is 0, of a point in that pixel;
         ///< NULL: each lane has the pixel at its position in the tile. Only for a perspective camera without a lens.
@@ -153,10 +152,8 @@ typedef struct glint_surface_args {
     const glint_camera_args *camera; ///< the rays of a perspective camera; NULL: they are in `origin` and `direction`
     const void *origin[3], *direction[3]; ///< real, one per ray
     const void *t;
-    void *point[3], *normal[3]; ///< out, real; the normal is unit and turned towards the viewer; normal[0] NULL: points
-        ///< only
-    bool all_normals; ///< only for lit_surface: all normals are written; false: some may be left out unless `mixed`
-        ///< is set
+    void *point[3], *normal[3]; ///< out, real; unit normals, turned towards the viewer; normal[0] NULL: only points
+    bool all_normals; ///< only for lit_surface; false: some normals may be left out unless `mixed` is set
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside); their normals were flipped towards the viewer
     uint16_t *dark; ///< out: lanes of `back` on one-sided surfaces, which get ambient light only

@@ -64,8 +64,7 @@ typedef struct glint_light_args {
     const glint_shade_material *materials; ///< only `highlight` and `least` are read
     const uint16_t *dark;
     bool directional;
-    double position[3]; ///< position of the light; directional: the unit vector towards the light; not read for area
-        ///< lights
+    double position[3]; ///< position; directional: the unit vector towards the light; area light: not read
     const double *positions[GLINT_LIGHT_CHUNK]; ///< the positions of several lights that have neither samples nor
         ///< cones and differ only in position; positions[0] NULL: one light, at `position`
     double
@@ -115,8 +114,7 @@ typedef struct glint_facet_args {
     const glint_light_sample *light_sample[GLINT_LIGHT_CHUNK];
     const uint16_t *lit[GLINT_LIGHT_CHUNK]; ///< written by the stage light
     // out, for each sample:
-    float *sine2[GLINT_LIGHT_CHUNK]; ///< squared sine between n and h; GLINT_NO_SPECULAR where unlit or if h is
-        ///< undefined
+    float *sine2[GLINT_LIGHT_CHUNK]; ///< squared sine between n and h; GLINT_NO_SPECULAR where unlit or h is undefined
     float *schlick[GLINT_LIGHT_CHUNK]; ///< (1 - v.h)^5; 0 where unlit or if h is undefined
 } glint_facet_args;
 // Only groups with a lit lane on a material of GLINT_HIGHLIGHT_FACETS are written, in every lane. The arithmetic:

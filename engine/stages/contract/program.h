@@ -45,8 +45,7 @@ typedef struct glint_program_code {
     uint32_t length;
     uint32_t row_count; ///< at most GLINT_PROGRAM_ROWS_MAX
     uint32_t output_count;
-    uint16_t outputs[GLINT_CODE_OUTPUTS_MAX]; ///< where each output is: a row, an input or a constant, as for
-        ///< operands
+    uint16_t outputs[GLINT_CODE_OUTPUTS_MAX]; ///< where each output is: a row, input or constant, as for operands
     const double (*numbers)[GLINT_NUMBER_LANES];
     const glint_texture_table *const *textures;
 } glint_program_code;
@@ -88,8 +87,7 @@ typedef struct glint_program_args {
     uint32_t group_count; ///< 1 .. GLINT_PROGRAM_GROUPS
     const uint16_t *wanted; ///< one bit per lane; nothing is stored elsewhere
     const double *input[GLINT_CODE_INPUTS]; ///< only set for inputs that the program reads: 16 numbers per group
-    uint64_t same; ///< one bit per input: all values of the input are the same number, stored GLINT_NUMBER_LANES
-        ///< times
+    uint64_t same; ///< one bit per input: all its values are one number, stored GLINT_NUMBER_LANES times
     double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
     const uint32_t *groups; ///< the position of each group in the arrays below; NULL: 0, 1, 2 ...
     const glint_program_sums *sums; ///< `sums_count` sums to compute; a factor of 0 adds nothing, even if the output

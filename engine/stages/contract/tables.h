@@ -114,14 +114,12 @@ typedef struct glint_node {
     uint32_t child[GLINT_NODE_WIDTH];
 } glint_node;
 
-/// Normals at the corners of a smoothly shaded triangle: unit vectors, except after a map that does not preserve
-/// angles.
+/// Normals at the corners of a smoothly shaded triangle: unit, except after a map that does not preserve angles.
 typedef struct glint_corner_normals {
     double normal[3][3];
 } glint_corner_normals;
 
-/// The points of a triangle at which light is computed once for all samples: the three corners, or the face three
-/// times.
+/// The points of a triangle at which light is computed once for all samples: its corners, or its face three times.
 typedef struct glint_shading_points {
     uint32_t at[3];
 } glint_shading_points;

@@ -7,8 +7,7 @@
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
-/// The rays of VD hits: directions of any length, slopes of origin and direction, and distances of the hits along the
-/// rays.
+/// The rays of VD hits: directions of any length, slopes of origin and direction, and the distances of the hits.
 typedef struct bent_rays {
     vd direction[3], moved[3], turned[3], far;
 } bent_rays;

@@ -72,8 +72,7 @@ typedef struct R(candidate) {
     float outer, inner; ///< round candidates: outer: maximum length of f x d for a hit; inner: length up to which
         ///< rays certainly hit; < 0: no hit is certain
     float axis_length[2]; ///< round candidates: lengths of along_s and along_t
-    float around; ///< round candidates: maximum length of the change of f x d from the middle of a group to its
-        ///< corner
+    float around; ///< round candidates: maximum length of the change of f x d from a group's middle to its corner
     float ahead[3], sway; ///< sphere: ahead: coefficients of b as a linear function of s and t; sway: maximum change
         ///< of b within a group
     float power; ///< t of a hit is this number divided by a positive number that bounds_of_t computes; 0: unknown

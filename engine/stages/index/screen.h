@@ -21,8 +21,7 @@ typedef struct screen_view {
     double exact[3]; ///< the origin before it was rounded
     float unit[2]; ///< length of a unit of screen position at k = 1; the third axis is a unit vector
     float base, inverse; ///< coefficients of k
-    float slack; ///< bound of a ray's rounding error, in addition to the error that comes from the coordinates of a
-        ///< box
+    float slack; ///< bound of a ray's rounding error, in addition to the error of a box's coordinates
     float first[2], last[2]; ///< bounds of the rays' screen positions
     float margin; ///< bound of the rounding error of these positions
     float cells[2]; ///< cells per unit of screen position
@@ -162,8 +161,7 @@ static inline unsigned behind_in_row(const float (*far)[SCREEN_ACROSS], int row,
     return behind & columns;
 }
 
-/// Returns whether a surface at the distance `near` may still be visible in some of the cells; far: maximum w of each
-/// cell.
+/// Returns whether a surface at the distance `near` may still be visible in any of the cells. far: maximum w of each.
 static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, screen_cells cells)
 {
     const unsigned columns = bit_range(first_column(cells), last_column(cells));

@@ -19,8 +19,7 @@
 typedef struct R(light_cap) {
     _Alignas(64) real direction[3][GLINT_GROUP]; ///< unit vector towards the light's centre
     _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< sine and cosine of half the cap's angular radius
-    _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent from the point to the light, in the light's
-        ///< units
+    _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent to the light, in the light's units
     _Alignas(64) real visible[GLINT_GROUP]; ///< visible share of the light so far
     unsigned around; ///< lanes inside the light
 } R(light_cap);
@@ -105,8 +104,7 @@ static inline double R(depth_of_light)(const glint_occlude_args *args, const gli
     return prim->kind == GLINT_PRIM_PLANE ? DOT(prim->normal, f) : prim->radius - sqrt(DOT(f, f));
 }
 
-/// Multiplies the group's shares by the share that a primitive leaves visible. own: lanes whose point is on the
-/// primitive.
+/// Multiplies the group's shares by the share that a primitive leaves visible. own: lanes with points on it.
 static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned own, unsigned lit,
                      R(light_cap) * cap)
 {

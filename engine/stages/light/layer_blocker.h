@@ -77,12 +77,10 @@ typedef struct layer_lanes_hit {
 typedef struct R(layer_blocker) {
     const layer_prim *at;
     const glint_prim *prim;
-    bool torus, clear; ///< clear: every sample is outside of the primitive, and farther from the points than the
-        ///< primitive
+    bool torus, clear; ///< clear: every sample is outside of the primitive, and beyond it as seen from the points
     float center[3], reach2, inner2; ///< for a sphere: its centre, and the squared distances from the centre within
         ///< which a segment may hit the sphere, and certainly hits it
-    float above; ///< a point with h below this is certainly below the primitive: a triangle's top, or a sphere's
-        ///< centre
+    float above; ///< points with h below this are certainly below the primitive (triangle: its top; sphere: its centre)
     float doubt; ///< for a triangle: error bound of the edge functions
     float unit[3][3], limit; ///< for a solid: the images of the frame's axes in the space of the unit shape; limit:
         ///< maximum size of the shape there
@@ -118,8 +116,7 @@ INNER layer_lanes_hit R(test_corners)(const layer_rays *rays, const R(layer_bloc
     return out;
 }
 
-/// Tests a sphere: a segment certainly hits the sphere if it is inside the sphere at the height of the sphere's
-/// centre.
+/// Tests a sphere: a segment certainly hits the sphere if it is inside the sphere at the centre's height.
 INNER layer_lanes_hit R(test_middle)(const layer_rays *rays, const R(layer_blocker) * b, uint32_t i)
 {
     const vf slope[2] = { f_load_any(rays->slope[0] + i), f_load_any(rays->slope[1] + i) };

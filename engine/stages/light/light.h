@@ -42,8 +42,7 @@ typedef struct R(gloss) {
 /// VF points of a group.
 typedef struct R(lit_points) {
     vr point[LIT_PARTS][3], normal[LIT_PARTS][3];
-    vr direction[LIT_PARTS][3], a[LIT_PARTS], nv[LIT_PARTS]; ///< a = length2(direction); only set if some lane is
-        ///< glossy
+    vr direction[LIT_PARTS][3], a[LIT_PARTS], nv[LIT_PARTS]; ///< a = length2(direction); only set if a lane is glossy
 } R(lit_points);
 
 /// The effect of a light or sample at VF points.

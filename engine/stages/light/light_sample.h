@@ -21,8 +21,7 @@ typedef struct R(light_sample_lanes) {
 typedef struct R(light_sample_set) {
     R(light_sample_lanes) light_sample[GLINT_LIGHT_CHUNK];
 #if GLINT_REAL == 32
-    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< memory for the rounded positions and
-        ///< normals
+    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< memory for rounded positions and normals
 #endif
     // for GLINT_EMIT_CONE, the samples of the current group:
     _Alignas(64) double exact_position[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];

@@ -36,8 +36,7 @@ typedef struct R(occluder) {
 typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
     light_bounds light; ///< the whole light if it is an area light
-    _Alignas(64) real position[3][GLINT_GROUP]; ///< position of the light, or of the light's current sample, for each
-        ///< lane
+    _Alignas(64) real position[3][GLINT_GROUP]; ///< for each lane, the position of the light or of its current sample
     _Alignas(64) float local_light[3][GLINT_GROUP]; ///< the same position in the index's frame
     bool far; ///< true: local_light, or numbers computed from it, may overflow
     R(occluder) occluders[GLINT_OCCLUDERS];
@@ -53,8 +52,7 @@ typedef struct R(shadow_group) {
     _Alignas(64) float local[3][GLINT_GROUP]; ///< only set if `placed`: the points in the index's frame
     uint32_t last_blocker; ///< the last primitive that blocked a point in the groups so far, or GLINT_MISS
     R(ray_group) rays; ///< only set if `made`: the rays in the index's units; --precision float: in the light's units
-    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< one over the components of the rays' directions, if there are
-        ///< solids
+    _Alignas(64) float inverse[3][GLINT_GROUP]; ///< if there are solids: one over the directions' components
 } R(shadow_group);
 
 /// Returns 1 if the light is outside or in front of the primitive, -1 if inside or behind, 0 if on it.

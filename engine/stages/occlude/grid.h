@@ -26,8 +26,7 @@ typedef struct grid_points {
     float uv[2][GLINT_TILE_SAMPLES], near[GLINT_TILE_SAMPLES]; ///< positions and depths in the format of entries,
         ///< plus GRID_BIAS
     float reach[GLINT_TILE_SAMPLES]; ///< factor of the square of an entry's radius
-    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< the entries of the point's cell that remain to be
-        ///< tested
+    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< the entries of the cell that are still to be tested
     uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
 } grid_points;
 
@@ -93,8 +92,7 @@ static unsigned grid_cells(const glint_light_grid *grid, grid_coords *coords)
         }
         f_store(coords->w + i, (w - f_set(grid->nearest)) * f_set(grid->slices) + bias);
         f_store(coords->reach + i, f_load(coords->reach + i) * f_set(GRID_REACH));
-        i_store(coords->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // row in the upper half, column in the lower
-            // half
+        i_store(coords->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // upper half: row, lower half: column
         inside |= fm_bits(in) << i;
     }
     return inside;
@@ -238,8 +236,7 @@ static unsigned grid_blocked(const glint_occlude_args *args, const grid_lanes *l
     return dm_bits(dm_or(d_lt(c, zero), blocked));
 }
 
-/// Decides all pairs. Blocked points are removed from the undecided points; the other points of the pairs stay
-/// undecided.
+/// Decides all pairs. Blocked points are removed from the undecided points; the others stay undecided.
 static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs, grid_points *points)
 {
     grid_lanes lanes;

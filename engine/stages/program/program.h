@@ -126,8 +126,7 @@ static void note_odd(const output *out)
         out->args->odd[g] |= (uint16_t)(find_odd(output_of(out, g)) & out->args->wanted[g]);
 }
 
-/// Stores the results of a whole call. If `watched`, a constant, is true: returns whether all results are valid
-/// reflectances.
+/// Stores the results of a whole call. If `watched`, a constant, is true, returns whether all are valid reflectances.
 INNER bool store_lanes(const output *out, const bool watched, float *to)
 {
     const size_t step = out->step, count = (size_t)out->args->group_count * GLINT_GROUP;

@@ -112,8 +112,7 @@ static double op_noise(double x, double y, double z, uint32_t seed, double *slop
 
 // ---- cells -------------------------------------------------------------------------------------------------------
 
-/// Computes the vector from the position to the feature point of a cube. x: from the position to the cube's lower
-/// corner.
+/// Computes the vector from the position to a cube's feature point. x: from the position to the cube's lower corner.
 static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
 {
     static const uint32_t factor[3] = { GLINT_HASH_B, GLINT_HASH_C, GLINT_HASH_X };

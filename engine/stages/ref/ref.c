@@ -1,6 +1,5 @@
 /// The scalar reference: every stage of stages.h for one sample at a time, in the order of operations of stages.h,
-/// sharing nothing with the vector bodies. A difference between this file and a vector body is a mistake in one of
-/// them.
+/// sharing nothing with the vector bodies. A difference from a vector body is a mistake in one of the two.
 #include "engine/base/sequence.h"
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/simd/coefficients.h"

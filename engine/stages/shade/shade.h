@@ -159,8 +159,7 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-/// Shades a group whose terms are final, because this call has all lights and there is one sample; `simple` is a
-/// constant.
+/// Shades a group whose terms are final, because this call has all lights and one sample; `simple` is a constant.
 INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g, light_colors *colors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;

@@ -32,8 +32,7 @@
 #define r_put_index d_put_index
 #define r_pick d_pick
 #define r_pack d_pack
-#define GLINT_PARALLEL 1e-60 // a ray is parallel to a plane if the squared sine of the angle between them is below
-    // this
+#define GLINT_PARALLEL 1e-60 // a ray is parallel to a plane if the angle's squared sine is below this
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
 #define GLINT_ON_FACE GLINT_ON_FACE_DOUBLE
 #define GLINT_ROUNDER GLINT_ROUNDER_DOUBLE

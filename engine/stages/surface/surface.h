@@ -83,8 +83,7 @@ typedef struct R(seen_slot) {
     real height[6]; ///< heights of the eye over a solid's faces
 } R(seen_slot);
 
-#define SEEN_SLOTS 4 ///< number of cached primitives; the groups of a tile show the same few primitives again and
-    ///< again
+#define SEEN_SLOTS 4 ///< number of cached primitives; a tile's groups show the same few again and again
 
 /// State while iterating over the groups of a tile.
 typedef struct R(surface_walk) {
@@ -242,8 +241,7 @@ typedef enum R(surface_outputs) {
     R(POINTS_ONLY) ///< only points, of balls and planes
 } R(surface_outputs);
 
-/// Stores the given lanes of a vector, and leaves the other lanes unchanged. Returns the lanes that are seen from
-/// behind.
+/// Stores the given lanes of a vector, without changing the others. Returns the lanes that are seen from behind.
 INNER unsigned R(store_lanes)(const glint_surface_args *args, const R(surface_lanes) * surface, size_t at,
                               unsigned lanes, R(surface_outputs) outputs, R(point_box) * box)
 {
@@ -384,8 +382,7 @@ INNER void R(place_level)(const glint_surface_args *args, const R(seen_prim) * s
     }
 }
 
-/// Computes only the points of a group that shows one plane of any other direction, or one sphere; `kind` is a
-/// constant.
+/// Computes only the points of a group that shows one sphere, or one plane of any other direction. kind: a constant.
 INNER void R(place_lanes)(const glint_surface_args *args, R(seen_slot) * slot, const glint_prim_kind kind,
                           R(group_directions) directions, size_t at)
 {
