@@ -175,7 +175,7 @@ static R(soft_group)
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = lanes_equal(args->prim + group->at, id) & lanes;
-        unsigned near = own; // of the primitive's own points, only points seen from behind, except on triangles and tori
+        unsigned near = own; // points on the primitive must be seen from behind, except on triangles and tori
         if (prim->kind == GLINT_PRIM_PLANE)
             near = 0;
         else if (prim->kind != GLINT_PRIM_TRIANGLE && !is_torus(args->geometry, prim))
