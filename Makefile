@@ -195,8 +195,8 @@ $(FILLED): $(BUILD)/%: bindings/% bindings/meta/fill.lua $(BUILD)/glint
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a $(if $(filter $(shell uname -m)-%,$(TARGET)),$(FILLED)) ## the command build/glint and the Lua module build/glint.so
 
-# Only stages are compiled for an instruction set, except ref.c. Unrolling helps only in these files. Processors with
-# AVX2 also have BMI and POPCNT for masks; select.c checks for all of them.
+# Only the stages are compiled for an instruction set; engine/stages/ref and select.c are not. Processors with AVX2
+# also have BMI and POPCNT for masks; select.c checks for all of them.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
 # UBSan cannot look into intrinsics. It checks the stages' sources in the generic kernels; ASan checks both.
 FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma $(if $(findstring undefined,$(SANITIZE)),-fno-sanitize=undefined -fno-sanitize=float-cast-overflow)
