@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs luacheck on the Lua files and cppcheck on the C files, and looks for phrases that make comments and pages hard to read. A tool
-# that is not installed is skipped with a message.
+# Runs luacheck on the Lua files and cppcheck on the C files, and looks for phrases that make comments and pages hard to
+# read. A tool that is not installed is skipped with a message.
 set -u
 bad=0
 if command -v luacheck >/dev/null 2>&1; then

@@ -12,7 +12,7 @@ set -u
 BUILD=${BUILD:-build}
 export BUILD GLINT="$PWD/$BUILD/glint" LUA_CPATH="$PWD/$BUILD/?.so;;"
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1} UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
-export GLINT_FONT=bitmap # text of the same pixels, whatever fonts this machine has
+export GLINT_FONT=bitmap # text has the same pixels, whatever fonts this machine has
 export LSAN_OPTIONS=${LSAN_OPTIONS:-print_suppressions=0}
 log_folder=$BUILD/tests/log
 limit_s=${TEST_LIMIT_S:-300}

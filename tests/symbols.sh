@@ -7,7 +7,7 @@ module=$1
 shift
 bad=0
 for object in "$@"; do
-    isa=$(basename "$object" .o | cut -s -d . -f 2) # points.avx2.f64.o; ref.o has none
+    isa=$(basename "$object" .o | cut -s -d . -f 2) # avx2 for points.avx2.f64.o; empty for ref.o
     if nm -g --defined-only "$object" | awk '{ print $3 }' | grep -vE "^glint_(stages_${isa:-ref}${isa:+|${isa}_[a-z0-9_]+})$"; then
         echo "^ $object: globals of ${isa:-ref} expected"
         bad=1
@@ -17,7 +17,8 @@ for object in "$@"; do
         bad=1
     fi
 done
-for object in "$@"; do # timed to the instruction: no checks at run time, whatever the flags of a package add
+# Kernels have no run-time checks, whatever flags a package adds: every instruction counts.
+for object in "$@"; do
     if nm -u "$object" | grep -q '_chk'; then
         echo "$object: hardened:" $(nm -u "$object" | grep '_chk')
         bad=1

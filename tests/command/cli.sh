@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The command line as a user sees it: names, selection, options, events, exit codes, and files that are complete or absent.
+# The command line as a user sees it: names, selection, options, events, exit codes, and files that are either complete
+# or absent.
 # shellcheck disable=SC2016
 . tests/command/prelude.sh
 
@@ -308,7 +309,7 @@ io.stderr:write(math.type(P.a), " ", math.type(P.b), " ", P.s, "\n") return requ
     exits 0 "--sweep" ten.lua --sweep radius=2:4:2 -f 10-11
     files "--sweep numbers through" ten_0010.png ten_0011.png
     exits 0 "--sweep shard" ten.lua --sweep radius=2:4:3 --sweep plain=0:1:2 --shard 12/12 -o 'w%02d.png'
-    files "--sweep shard" w28.png w29.png w30.png w59.png w60.png # frames of both values of `plain`, which changes nothing
+    files "--sweep shard" w28.png w29.png w30.png w59.png w60.png # both values of `plain`, which has no effect
     exits 0 "--sweep of a still" one.lua --size 40x24 -o none
     exits 2 "--sweep of an unknown one" ten.lua --sweep raduis=1:2:3
     exits 2 "--sweep out of range" ten.lua --sweep radius=1:50:3 -o none

@@ -80,7 +80,7 @@ END
 grep -E -- '^ +--[a-z-]+.*compgen -W' "$work/bash" | sed -E 's/^ +--([a-z-]+).*compgen -W "([^"]*)".*/\1 \2/' >"$work/choices"
 check "there are choices" test "$(wc -l <"$work/choices")" -ge 7
 while read -r option words; do
-    [ "$option" != terminal ] || continue # of watch, which does not end
+    [ "$option" != terminal ] || continue # an option of `glint watch`, which runs until it is stopped
     scene=("$work/scene.lua")
     case $option in
     dialect) scene=("$work/gr.lua") ;;

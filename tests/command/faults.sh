@@ -18,7 +18,8 @@ bad=0
 command -v cc >/dev/null || { echo "skip: no compiler here"; exit 77; }
 cc -O1 -shared -fPIC "$root/tests/faults/fail.c" -o fail.so -ldl && cc -O1 "$root/tests/faults/every.c" -o every || exit 1
 
-unset GLINT_FONT # a font's letters, where there is one: FreeType goes on without what it has no memory for
+# Uses a font file where there is one: FreeType continues without the parts for which it has no memory.
+unset GLINT_FONT
 cat >helper.lua <<'LUA'
 local glint = require "glint"
 local lamp = glint.point_light { position = { 3, 8, 4 } }
@@ -126,7 +127,7 @@ for kind in alloc write; do
     each $kind "a sheet's colour bar" sheet f_1.png f_2.png -o out/sheet.png -q --colorbar magma,0,1,T
     each $kind "parts joined" join part_1.png part_2.png -o out/joined.png -q
     each $kind "a mesh, a texture" mesh.lua -o out/m.png -t 1 -q
-    STEP=$((7 * ${STEP:-7})) each $kind "the dialect" --dialect gr room.lua -t 1 -q # compiled anew by each run
+    STEP=$((7 * ${STEP:-7})) each $kind "the dialect" --dialect gr room.lua -t 1 -q # each run compiles it again
     each $kind "an array" film.lua -f 1 -o out/n.npy -t 1 -q
     each $kind "vectors" still.lua -o out/w.svg -t 1 -q
     if "$glint" --version --verbose | grep -q '\.exr'; then

@@ -3,7 +3,7 @@
 # tolerance 0: the engine guarantees the same pixels on every machine. A failure leaves both pictures in the build
 # folder. `update` writes new goldens and prints the differences; the commit must say why they changed.
 set -u
-export GLINT_FONT=bitmap # text of the same pixels everywhere
+export GLINT_FONT=bitmap # text has the same pixels on every machine
 build=${BUILD:-build}
 glint=${GLINT:-$build/glint}
 out=$build/tests/golden

@@ -4,7 +4,7 @@
 . tests/command/prelude.sh
 cd "$work" || exit 1
 seconds=5
-memory_kib=400000 # of address space: a picture in memory is far less, what the files below claim is far more
+memory_kib=400000 # limit of address space: far more than a picture needs, far less than the files below claim
 
 mkfifo pipe pipe.png pipe.pfm pipe.obj pipe.stl pipe.ply
 mkdir folder folder.png folder.pfm folder.obj folder.stl folder.ply
@@ -72,8 +72,8 @@ done
 for kind in stl ply; do
     script "a mesh that is not as large as it says, .$kind" "claims.$kind: .*expected, got" 'require("glint").mesh { file = "claims.'$kind'" }'
 done
-# This file has all the vertices that it claims, all at one point. Reading ends when the memory limit is reached, which takes
-# seconds in a build without optimization. A sanitizer's build has no memory limit.
+# This file has all the vertices that it claims, all at one point. Reading ends when the memory limit is reached, which
+# takes seconds in a build without optimization. A sanitizer's build has no memory limit.
 [[ $build = *-asan ]] || seconds=60 script "a mesh that only begins" "begun.ply: |out of memory" 'require("glint").mesh { file = "begun.ply" }'
 printf 'mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n' device.png >named.obj
 printf 'mtllib good.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n' >painted.obj

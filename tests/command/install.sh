@@ -17,7 +17,7 @@ local particles, xyz = require "glint.particles", require "glint.xyz"
 io.stderr:write(assert(package.searchpath("glint.particles", package.path)), "\n")
 assert(particles.new and xyz.frames)
 END
-own() { # the module that the command finds lies beside it: PREFIX, whether or not another glint is installed
+own() { # PREFIX: the command finds the modules of its own prefix, whether or not another glint is installed
     env -C "$work" -u LUA_PATH -u LUA_PATH_5_4 "$1/bin/glint" own.lua 2>&1 | head -n 1 | grep -Fq "$1/bin/../share/lua/5.4/glint/particles.lua"
 }
 check "the command finds its own modules" own "$prefix"

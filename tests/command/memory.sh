@@ -71,9 +71,10 @@ script 20000 'local lamp = glint.point_light { position = { 0, 8, 4 } }' \
     '  lamp.position = { 9 * glint.cos(6 * t), t - 0.5, 4 }' '  measure(n)' 'end }'
 grows "20,000 frames" 1000000 -o none
 
-# The cache between frames takes at most --reuse-memory. The script walks at random over values that return; its peak memory is compared
-# with the peak of a run without reuse. 24 MB are less than three pictures' hits and lights. A fixed mmap threshold makes glibc
-# return freed blocks to the system: without it, fragmentation adds 0 to 8 MB to the peak, by chance.
+# The cache between frames takes at most --reuse-memory. The script chooses among a few values at random, so that values
+# return. Its peak memory is compared with the peak of a run without reuse. 24 MB are less than the hits and lights of
+# three pictures. A fixed mmap threshold makes glibc return freed blocks to the system: without it, fragmentation adds 0
+# to 8 MB to the peak, by chance.
 cat >walk.lua <<'LUA'
 local glint = require "glint"
 local state = 7

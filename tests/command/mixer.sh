@@ -27,7 +27,7 @@ page() {
         echo "$2"
         echo 'const out = document.createElement("pre"); out.textContent = "NOTES\n" + notes.join("\n") + "\nEND"; document.body.append(out); })();</script>'
     } >acted.html
-    for _ in 1 2 3; do # the browser's clock may run out while another thread of it unpacks, where others use the machine
+    for _ in 1 2 3; do # on a busy machine, the browser's clock may run out while another of its threads unpacks
         browse "file://$work/acted.html"
         sed -n '/NOTES/,/END/p' dom >notes
         grep -q '^END' notes && break
@@ -95,7 +95,7 @@ run_for() { # PICTURES: seconds
     took=$(awk "BEGIN { print $EPOCHREALTIME - $start }")
 }
 ms=9999
-for _ in 1 2 3 4 5; do # others may use the machine: the least counts
+for _ in 1 2 3 4 5; do # the machine may be busy: the shortest time counts
     run_for 10
     few=$took
     run_for 130

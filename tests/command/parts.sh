@@ -5,7 +5,7 @@
 cd "$work" || exit 1
 scene=$root/scripts/mirror_and_glass.lua
 size=201x133
-regions="0,0,70,50 70,0,131,50 0,50,201,33 0,83,50,50 50,83,151,50" # some edges are those of tiles, some are not
+regions="0,0,70,50 70,0,131,50 0,50,201,33 0,83,50,50 50,83,151,50" # some edges coincide with tile borders
 
 # joined NAME PASSES OPTION...: compares the whole frame with five joined parts
 joined() {
@@ -46,7 +46,8 @@ for n in 1 2 3; do
     check "frame $n of parts" "$glint" join film/*_$n.png -o film/joined.png -q
     check "is frame $n" cmp film/joined.png film/$n.png
 done
-# An open shutter with moving lights, then with moving objects. A file is not rendered again while the shutter is unchanged.
+# An open shutter with moving lights, then with moving objects. A file is not rendered again while the shutter is
+# unchanged.
 scene=$root/scripts/shutter.lua
 for moves in lamp all; do
     options="-f 2 --set moves=$moves --set times=3 -o f.png --alpha --bits 16"

@@ -1,5 +1,6 @@
-# Shared by the tests of the command. Each test sources this file first, from the top of the checkout, and ends with `totals`.
-# Sets root, build, glint and GLINT (the command) and work (a temporary folder, removed at the end), and counts checks.
+# Shared by the tests of the command. Each test sources this file first, from the top of the checkout, and ends with
+# `totals`. The file sets root, build, glint and GLINT (the command) and work (a temporary folder, removed at the end),
+# and counts checks.
 # shellcheck shell=bash disable=SC2034
 set -u
 root=$PWD build=${BUILD:-build}

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# `glint publish` without a browser: the contents of the page, and input that it refuses. tests/web/pages.mjs opens a page in a browser.
+# `glint publish` without a browser: the contents of the page, and input that the command refuses. tests/web/pages.mjs
+# opens a page in a browser.
 . tests/command/prelude.sh
 cd "$work" || exit 1
 mkdir web data other

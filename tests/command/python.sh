@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the blocks of scripts/python.md in order. Blocks whose Python modules are not installed are skipped with a message. Also
-# checks that normals computed from a DiLiGenT set match the normals in the set.
+# Runs the blocks of scripts/python.md in order. Blocks whose Python modules are not installed are skipped with a
+# message. Also checks that normals computed from a DiLiGenT set match the normals in the set.
 . tests/command/prelude.sh
 mkdir "$work/bin"
 ln -s "$glint" "$work/bin/glint"

@@ -31,7 +31,7 @@ run() {
     fi
 }
 
-python= # one that has NumPy; tests/command/python.sh runs the blocks of scripts/python.md
+python= # a Python with NumPy, or empty; tests/command/python.sh runs the blocks of scripts/python.md
 for name in python3 /usr/bin/python3; do
     if [ -z "$python" ] && $name -c 'import numpy' 2>/dev/null; then python=$name; fi
 done
@@ -84,7 +84,7 @@ check_paths() {
     local folder path
     folder=$root/$(dirname "$1")
     for path in $(grep -oE '`[a-z_/.0-9]+\.(c|h|lua|sh|md|csv|png|1)`' "$root/$1" | tr -d '`' | sort -u); do
-        case $path in *_.* | */.* | *.so.*) continue ;; esac # patterns, and what is built
+        case $path in *_.* | */.* | *.so.*) continue ;; esac # patterns of names, and files that the build makes
         [ -e "$root/$path" ] || [ -e "$folder/$path" ] || git -C "$root" ls-files | grep -q "/$path\$" ||
             { echo "not ok - $1 names $path, which is not there"; bad=1; }
     done

@@ -34,7 +34,7 @@ films() {
         check "$film decodes" ffmpeg -v error -xerror -i $film -f null -
         check "$film of plain colours" "$GLINT" plain.lua -o plain.$kind
         check "$film as pictures" ffmpeg -v error -y -i plain.$kind -vf format=rgb24 plain_${kind}_%d.png
-        for n in 1 2 3; do # the wrong matrix or range would be off by 0.05 and more
+        for n in 1 2 3; do # with a wrong matrix or range, colours would be off by at least 0.05
             check "colour $n of $film" "$GLINT" compare plain_$n.png plain_${kind}_$n.png --fail 0.02 --warn 0.02
         done
         [ ! -d $film.frames ] && pass || fail "$film.frames is there"
@@ -46,7 +46,7 @@ films() {
     check "an APNG" "$GLINT" assemble 'frame_%04d.png' -o film.png
     same "ffmpeg reads the APNG" "$(ffprobe -v error -f apng -count_frames -show_entries stream=width,height,nb_read_frames \
         -of csv=p=0 film.png)" "161,91,24"
-    for n in 1 7 24; do # lossless
+    for n in 1 7 24; do # APNG is lossless
         check "its frame $n" ffmpeg -v error -y -f apng -i film.png -vf "select=eq(n\\,$((n - 1)))" -frames:v 1 shown.png
         check "is the frame" "$GLINT" compare "$(printf 'frame_%04d.png' $n)" shown.png
     done
@@ -61,7 +61,7 @@ if command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null; then films; el
 uri() { # VARIABLE FILE: a line of JavaScript
     printf 'const %s = Uint8Array.from(atob("%s"), c => c.charCodeAt(0));\n' "$1" "$(base64 -w 0 "$2")"
 }
-dump() { # PAGE: what the element "result" holds after a while
+dump() { # PAGE: prints the contents of the element "result" after a while
     timeout 120 chromium --headless --no-sandbox --disable-gpu --user-data-dir="$work/profile" --virtual-time-budget=20000 \
         --dump-dom "file://$work/$1" 2>log </dev/null | sed -n 's/.*<pre id="result">\(.*\)<\/pre>.*/\1/p'
 }

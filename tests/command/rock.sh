@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the rock of `make dist` into an empty folder, or without git and zip the result of `luarocks make`. The module must load
-# in plain Lua and render, the command must run, and removing the rock must remove both.
+# Installs the rock of `make dist` into an empty folder; without git and zip, the result of `luarocks make`. The module
+# must load in plain Lua and render, the command must run, and removing the rock must remove both.
 . tests/command/prelude.sh
 rocks() { HOME=$work MAKEFLAGS="-j2 -- KERNELS=native" luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
 

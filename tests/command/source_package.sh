@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The Debian source package of .github/debian, from the committed files: dpkg-source must build it, and lintian must not complain.
-# Prints TAP lines; 77 where git, dpkg-dev or lintian is not installed.
+# The Debian source package of .github/debian, from the committed files: dpkg-source must build it, and lintian must not
+# complain. Prints TAP lines. Exits with 77 if git, dpkg-dev or lintian is not installed.
 set -u
 for tool in git dpkg-buildpackage dh lintian; do
     command -v $tool >/dev/null 2>&1 || {

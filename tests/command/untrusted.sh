@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # --untrusted: attacks by hostile scripts, and their outcome.
 . tests/command/prelude.sh
-export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # which traces processes
+export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # the leak detector traces processes
 cd "$work" || exit 1
 seconds=20
 
@@ -131,12 +131,12 @@ script 'local function grow() local t = "x" while true do t = t .. t end end' \
 refused "memory in a frame" "not enough memory" -o a.png
 script 'local t = { ("x"):rep(6e7) }; t[2] = ("y"):rep(6e7)'
 refused "memory in two strings" "not enough memory" -o a.png
-if [ $slack_ms -eq 1000 ]; then # a sanitizer maps terabytes, so that there is no limit
+if [ $slack_ms -eq 1000 ]; then # a sanitizer maps terabytes, so its builds have no memory limit
     script
     refused "memory for a picture" "out of memory" -o a.png --size 40000x40000
 fi
 if [ $slack_ms -eq 1000 ] && [ -x /usr/bin/time ]; then
-    script # without a picture: what a run itself takes
+    script # renders no picture: measures the memory of the run itself
     /usr/bin/time -o used -f %M "$glint" --untrusted scene.lua -o none -q >out 2>err
     most=$((65536 * 110 / 100 + $(tail -n 1 used)))
     for line in 'for i = 1, 1e9 do t[i] = {} end' 'for i = 1, 1e9 do t[i] = "s" .. i end' 'for i = 1, 1e9 do t = { t } end' \
@@ -173,7 +173,7 @@ if [ $slack_ms -eq 1000 ] && [ -x /usr/bin/time ]; then # as RLIMIT_AS counts it
     done
 fi
 script 'local function deep(n) return 1 + deep(n + 1) end deep(1)'
-refused "a deep stack" "\(stack overflow\|not enough memory\)" -o a.png # their limits are near each other
+refused "a deep stack" "\(stack overflow\|not enough memory\)" -o a.png # both limits are close to each other
 script 'local function deep() return ("x"):gsub("x", deep) end deep()'
 refused "a deep stack of C" "stack overflow" -o a.png
 
@@ -224,7 +224,7 @@ for signal in INT TERM; do
     "$glint" --untrusted scene.lua -o a.png >out 2>err </dev/null &
     pid=$!
     sleep 0.5
-    kill -s $signal $pid # a background job of a shell ignores INT: it is sent to the process itself
+    kill -s $signal $pid # a background job of a shell ignores INT, so the signal is sent to the process itself
     [ $signal = INT ] && sleep 0.3 && kill -s TERM $pid 2>/dev/null
     wait $pid
     [ $? -ge 130 ] && ! pgrep -P $pid >/dev/null
@@ -236,14 +236,14 @@ signalled() { # SIGNAL; code: how it ended
     pid=$!
     sleep 0.5
     kill -s "$1" $pid
-    { wait $pid; } 2>bash.err # where the shell tells of it
+    { wait $pid; } 2>bash.err # the shell reports the signal here
     code=$?
 }
 for signal in TERM HUP; do
     in_time $((500 + slack_ms)) signalled $signal && [ $code -eq $((128 + $(kill -l $signal))) ] && [ ! -s err ]
     result $? "one SIG$signal in C ends it with $code after $((took - 500)) ms"
 done
-left=inside/.0001.png.$(uname -n).$pid.0.tmp # of a process that is gone
+left=inside/.0001.png.$(uname -n).$pid.0.tmp # a hidden file of a process that has ended
 touch "$left"
 seconds=1
 run -o inside/c.png
@@ -262,11 +262,11 @@ LUA
 (ulimit -f 200 && exec "$glint" --untrusted=20 scene.lua -o much/%06d.pfm -q) >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "the script wrote more than 819200 bytes" err && [ "$(find much | wc -l)" -lt 50000 ]
 result $? "bytes in all: four times what one file may have"
-rm -r much && mkdir much # pictures of some 70 bytes, each of which takes a block of the disk
+rm -r much && mkdir much # each picture has some 70 bytes and takes a block of the disk
 (ulimit -f 200 && exec "$glint" --untrusted=20 scene.lua -o much/%06d.png --size 4x4 -q) >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "the script wrote more than 819200 bytes" err && [ "$(find much -type f | wc -l)" -lt 1000 ]
 result $? "many small files: $(find much -type f | wc -l), $(cat err)"
-rm -r much && mkdir much # pictures of 1.2 MB, as fast as they come
+rm -r much && mkdir much # pictures of 1.2 MB, written as fast as possible
 (ulimit -f 20000 && exec "$glint" --untrusted=60 scene.lua -o much/%06d.pfm --size 320x320 -q) >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "the script wrote more than 81920000 bytes" err
 result $? "bytes in all: $(cat err)"

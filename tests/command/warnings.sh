@@ -365,10 +365,10 @@ run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff 
 for script in "$root"/scripts/*.lua; do
     name=$(basename "$script") dialect='' size=64x36
     [[ $name != gr_* ]] || dialect=--dialect=gr
-    one=${PRELOAD:+-f 1}                   # all frames take a sanitizer minutes
-    [ "$name" != fit.lua ] || one=         # needs all of its frames
-    [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
-    case $name in # letters of 10 pixels fit
+    one=${PRELOAD:+-f 1}                   # with a sanitizer, all frames would take minutes
+    [ "$name" != fit.lua ] || one=         # fit.lua needs all of its frames
+    [ "$name" != lobes.lua ] || size=64x25 # a narrower picture would cut off the ends
+    case $name in # letters of 10 pixels must fit
         cosine.lua | furnace.lua | highlight_angles.lua | labels.lua | normals.lua | penumbra.lua | snell.lua | vectors.lua)
             size=320x180 ;;
     esac

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# glint watch: rendering again after a save, errors and recovery, files that appear and disappear, and the page's server,
-# queried through /dev/tcp. Prints TAP lines. tests/command/watch_page.sh (`make check-watch`) tests the page in a browser.
+# glint watch: rendering again after a save, errors and recovery, files that appear and disappear, and the page's
+# server, queried through /dev/tcp. Prints TAP lines. tests/command/watch_page.sh (`make check-watch`) tests the page in
+# a browser.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 lib=$PWD/scripts/lib
@@ -67,7 +68,7 @@ for shade in 0.1 0.2 0.3 0.4 0.6; do
     check "a save renders again" await '"event":"picture"' $((before + 1))
 done
 best=9999
-for try in $(seq 20); do # others may use the machine: the least counts
+for try in $(seq 20); do # the machine may be busy: the shortest time counts
     before=$(seen picture)
     begin=$(date +%s%N)
     save 0.$((try % 2 + 1))
@@ -234,7 +235,7 @@ save 0.5 "error 'shown on the page'"
 check "an error is an event, with the last picture" await '"picture":[1-9][0-9]*,.*"error":".*shown on the page"' 1 stream
 check "the picture stays" grep -qa PNG <(ask GET "${path}picture" "")
 save 0.5
-kill $listener # a browser that goes away
+kill $listener # as when a browser closes the page
 exec 6<&- 6>&-
 before=$(seen picture)
 sleep 0.1

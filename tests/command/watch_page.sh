@@ -122,7 +122,7 @@ check "frames scrub" becomes "get('frame').textContent === 'frame 7 of 12' && st
 # A drag of a hundred steps ends at its last value, and no command is lost.
 run "for (let i = 1; i <= 100; i++) { const s = document.querySelector('[name=shade]'); s.value = i / 100 * 0.8; s.dispatchEvent(new Event('input')); }"
 check "a drag ends where it ended" becomes "state.params.find(p => p.name === 'shade').value === 0.8"
-if [ -n "${SHOT:-}" ]; then # a picture of the page, for people
+if [ -n "${SHOT:-}" ]; then # saves a screenshot of the page, for people
     send Page.captureScreenshot '{}' "$session" && field data | base64 -d >"$SHOT"
 fi
 exit $bad
