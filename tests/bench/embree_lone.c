@@ -28,7 +28,7 @@ static size_t nearest(const plain_scene *s, const double origin[3], const double
                                       .mask = UINT32_MAX },
                              .hit = { .geomID = RTC_INVALID_GEOMETRY_ID } };
     rtcInitIntersectContext(&context);
-    if (*far <= 1) { // this was a shadow ray
+    if (*far <= 1) { // a shadow ray: its direction reaches to the light, at t = 1
         rtcOccluded1(side->scene, &context, &ray.ray);
         return ray.ray.tfar < 0 ? 0 : NO_SPHERE;
     }

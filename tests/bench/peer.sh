@@ -5,7 +5,7 @@
 #       setup (parsing, bounding) and render (tracing) by the program's own clock; wall: everything; cpu: processor
 #       time, for POV-Ray of tracing only, as it reports it, for Tachyon of everything
 #   peer.sh povray job change=light|shininess [threads=N]
-#       seconds for the job's 60 frames: the first FRAMES are rendered and the time is scaled; cpu likewise
+#       seconds for the job's 60 frames: renders the first FRAMES of them and scales the time; also scales cpu
 set -eu
 FRAMES=6
 program=$1 mode=$2
@@ -60,8 +60,8 @@ if [ "$mode" = job ]; then
         print "job s", ns / 1e9 * 60 / frames; print "cpu s", cpu * 60 / frames }'
     exit
 fi
-# POV-Ray: "Trace Time: 0 hours 0 minutes 0 seconds (0.603 seconds)", "using 1 thread(s) with 0.600 CPU-seconds total"; Tachyon:
-# "Ray Tracing Time: 0.1595 seconds"
+# POV-Ray prints "Trace Time: 0 hours 0 minutes 0 seconds (0.603 seconds)" and "using 1 thread(s) with 0.600 CPU-seconds
+# total". Tachyon prints "Ray Tracing Time: 0.1595 seconds".
 tr '\r' '\n' <"$folder/log" | awk -v ns=$((end - begin)) -v cpu="$cpu" '
     /CPU-seconds total/ { cpu = substr($0, index($0, "with ") + 5) + 0 }
     match($0, /[0-9.]+ seconds\)?$/) { seconds = substr($0, RSTART) + 0 }

@@ -84,7 +84,7 @@ typedef struct table {
 
 static table material_table, light_table, camera_table, shape_table, scene_table;
 
-/// The ranges of members for which the range chosen from the engine's table rarely makes a picture that shows something.
+/// Ranges of some members. With the range chosen from the engine's table, few pictures would show anything.
 static const struct {
     const char *member;
     double low, high;

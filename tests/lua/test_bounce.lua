@@ -303,7 +303,7 @@ local function pool(absorption, more)
 end
 local A = { 0.2, 0.05, 0.7 }
 
-do -- only on the eye's own path: mirrors and glass absorb further on; a light without shadows is not absorbed
+do -- only the eye's own path dims a term; mirrors and glass dim further; light without shadows is not absorbed
   local fields = { width = 40, height = 30, output = "none", passes = "depth,beauty," .. table.concat(TERMS, ",") }
   local clear, dense = pool(0):render(fields), pool(A):render(fields)
   local worst, sums = 0, 0

@@ -678,7 +678,7 @@ function tests.errors_are_told()
   raises("and at most 8 derivatives", render, scene_of(lamp), table.concat(names, ","))
 end
 
--- A refined pixel has the derivative of all samples, other pixels that of one sample.
+-- A refined pixel has the derivative of all samples, another pixel the derivative of one sample.
 function tests.adaptive()
   local x = glint.variable("x", 2)
   local function compare(what, change)

@@ -128,7 +128,7 @@ do -- a mirror above: the floor's light returns to the floor without another bou
   near(seen:pixel(4, 3, "mirror"), 0.5 * 0.25 / (1 - 0.25), 2 * ROUNDING + 4 * LOSS, "and what it shows")
   check(seen:pixel(4, 3, "indirect") == 0, "a mirror without diffuse has no indirect light of its own")
 end
-do -- non-refracting glass between floor and sky, which tints its shadow and its light alike
+do -- non-refracting glass between floor and sky, which tints its shadow and its transmitted light equally
   local pane = glint.material { diffuse = 0, transmission = { 0.5, 0.8, 0.2 }, ior = 1 }
   local image = look({ 0, 1, 0 }, { 0, -1, 0.1 }, {
     background = 1, indirect = { samples = 4, bounces = 3 }, floor(plain {}, 0), floor(pane, 2),

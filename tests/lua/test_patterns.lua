@@ -73,7 +73,7 @@ function tests.operations_take_plain_numbers()
   check(glint.hash(1, 2, 3) ~= glint.hash(1, 2, 4) and glint.hash(1, 2, 3) == glint.hash { 1, 2, 3 })
 end
 
--- Inside a pattern, the plain numbers of the 64 test points go through the same operations.
+-- These operations take symbols while a pattern is traced, and plain numbers when it runs at the 64 test points.
 function tests.exp_log_tan_min_and_max_take_symbols()
   local at = { p = { 0.3, 1.2, -0.7 } }
   local function value(f) return glint.pattern(f):evaluate(at).x end

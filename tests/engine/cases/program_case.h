@@ -58,7 +58,7 @@ static inline recipe random_recipe(bool odd)
         for (int k = 0; k < GLINT_OPERANDS_MAX; k++)
             step.operand[k] = one_in(3) ? reads + below(numbers) : below(r.value_count);
         if (step.op == GLINT_OP_NOISE_SLOPE)
-            step.operand[3] = reads; // see recipe_build
+            step.operand[3] = reads; // a placeholder: recipe_op replaces it
         recipe_add(&r, step, glint_op_info_of(step.op)->results);
         i++;
     }

@@ -365,7 +365,7 @@ static inline glint_box place_sphere(const glint_geometry_table *table, glint_pr
     return box;
 }
 
-/// Does the same for primitives without a radius.
+/// Like place_sphere, for primitives without a radius.
 static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
 {
     const glint_geometry_table *table = &scene->table;

@@ -181,8 +181,8 @@ static void bracket(const unit_span *exact, const unit_span *grown, const unit_s
 /// Returns how far rounding may move each part of the unit shape: 2^-53 times `rounding`, the condition and the
 /// reach.
 ///
-/// Let x = c + M k, M = T F: the shape's frame F under its transform T. The engine knows M to a few roundings of the
-/// sums in |T| |F|, each column of F being a few roundings off: nine of them. These move k by |M^-1| |T||F| |k|, the
+/// Let x = c + M k, M = T F: the shape's frame F under its transform T. Each column of F is off by a few
+/// roundings, and the engine's M by nine roundings of the sums in |T| |F|. These move k by |M^-1| |T||F| |k|, the
 /// condition times |k|. The elements of the inverse are cofactors (two roundings, despite cancellation) over the
 /// determinant (three of |row| |cofactors|, so three of the condition, common to all) and one more: six. Its products
 /// with x - c are of size |M^-1| |M k|, and so are the errors of their sums: three roundings of the condition times

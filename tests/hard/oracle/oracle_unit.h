@@ -31,7 +31,7 @@ int unit_first_ahead(const unit_span *s);
 /// Returns whether a part can be the one that ends the span at `end`, when each part moves by up to g > 0 on its own.
 /// A ray enters the shape through the part that it enters last: at the latest where that part is shrunk, and no
 /// earlier than it enters the last of the other parts. That is no earlier than the entry into the shape grown as a
-/// whole. Likewise the ray leaves through the part that it leaves first.
+/// whole. In the same way, the ray leaves through the part that it leaves first.
 bool unit_may_end(const glint_shape_desc *desc, int part, const unit_ray *r, quad g, int end, const unit_span *grown);
 
 /// Computes the outward normal, of any length, of a part that ends the span next to t.
