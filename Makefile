@@ -63,8 +63,8 @@ STRIP_LOCAL  := $(if $(MACOS),-S -x,--strip-unneeded)
 
 have = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
 PACKAGES := libpng zlib libxxhash
-# ISA-L's output depends on the address of its stream (engine/file/deflate.c), and ThreadSanitizer does not allow the
-# necessary addresses.
+# ISA-L's output depends on the address of its stream (engine/file/deflate.c),
+# and ThreadSanitizer does not allow the necessary addresses.
 ifeq ($(call have,libisal)$(filter thread,$(SANITIZE)),yes)
   PACKAGES += libisal
   DEFINES += -DGLINT_HAVE_ISAL
@@ -119,8 +119,8 @@ endif
 # WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
-# PORTABLE=1 builds here as for other machines: generic kernels, POSIX instead of inotify, eventfd etc., and no
-# --untrusted.
+# PORTABLE=1 builds here as for other machines:
+# generic kernels, POSIX instead of inotify, eventfd etc., and no --untrusted.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE) $(if $(THREADS),,-DGLINT_NO_THREADS)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -288,8 +288,8 @@ $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 .PHONY: shared
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
-# When flags or libraries change, everything is compiled again. When only KERNELS changes, only the table of kernels
-# (select.c) is.
+# When flags or libraries change, everything is compiled again.
+# When only KERNELS changes, only the table of kernels (select.c) is.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS)
 $(BUILD)/flags $(BUILD)/kernels: FORCE
