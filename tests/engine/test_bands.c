@@ -19,8 +19,8 @@ static size_t row_bytes(const glint_image *image)
     return (size_t)image->width * 3 * (image->code_tone.bits == 16 ? 2 : 1);
 }
 
-/// Writes new pixel values into a row of tiles: often few different ones, so that the size of deflated bands varies
-/// widely.
+/// Writes new pixel values into a row of tiles:
+/// often few different ones, so that the size of deflated bands varies widely.
 static void paint(glint_image *image, size_t tile_row)
 {
     size_t first = tile_row * GLINT_TILE_HEIGHT, end = first + GLINT_TILE_HEIGHT;

@@ -160,8 +160,8 @@ static void one_in_the_other(void **unused)
     near_share(light, 0.5, (double[3]) { 0, -40, 0 }, 2, 1); // the ball below the floor
 }
 
-/// Test case L12 in tests/hard: a light of radius 0.5 at height 4 above a ball of radius 0.5 at height 2: umbra 0.5,
-/// penumbra sqrt(3).
+/// Test case L12 in tests/hard: a light of radius 0.5 at height 4 above a ball of radius 0.5
+/// at height 2: umbra 0.5, penumbra sqrt(3).
 static void umbra_and_penumbra(void **unused)
 {
     (void)unused;

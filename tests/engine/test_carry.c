@@ -299,8 +299,8 @@ static bool random_seen(const glint_plan *plan, uint32_t column, uint32_t row, c
     return inside;
 }
 
-/// Returns the squared distance from the ball's centre to the segment between the point and the light, in squared
-/// radii.
+/// Returns the squared distance from the ball's centre to the segment between the point
+/// and the light, in squared radii.
 static double way_past(const glint_ball *ball, const double from[3], const glint_plan_light *light)
 {
     double way[3], line[3], along = 0, length2 = 0, across2 = 0;

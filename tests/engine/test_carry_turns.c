@@ -1,6 +1,6 @@
 /// Cases that random edits seldom reach. Reused results must equal a fresh frame bit for bit when frames alternate
-/// between cameras, scenes, other objects with the same triangles, extreme distances, or more data than fits in
-/// memory.
+/// between cameras, scenes, other objects with the same triangles, extreme distances,
+/// or more data than fits in memory.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -189,8 +189,8 @@ static void a_box_begun(void **unused)
     free_stand(&s);
 }
 
-/// Two scenes with the same geometry: one stores its primitives in the order of definition, the other in the order of
-/// its BVH.
+/// Two scenes with the same geometry: one stores its primitives in the order of definition,
+/// the other in the order of its BVH.
 static void another_order(void **unused)
 {
     (void)unused;

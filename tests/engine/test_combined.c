@@ -392,8 +392,8 @@ static void check_hit(uint64_t seed, const double o[3], const double d[3], const
         fail_msg("seed %d: the normal does not point outwards", (int)seed);
 }
 
-/// Random CSG trees against point sets: the first change of inside to outside or back is the hit, and its normal
-/// points outwards.
+/// Random CSG trees against point sets: the first change of inside to outside or back is the hit,
+/// and its normal points outwards.
 static void against_sets(uint64_t seeds)
 {
     int hits = 0, sure_rays = 0, rays = 0;

@@ -18,8 +18,8 @@
 
 static void put(uint8_t *at, const char *bytes) { memcpy(at, bytes, strlen(bytes)); }
 
-/// Zeros and a repeated byte sequence: with a wrong bucket for the second position, the encoder does not find the
-/// repetition.
+/// Zeros and a repeated byte sequence: with a wrong bucket for the second position,
+/// the encoder does not find the repetition.
 static uint8_t *make_band(void)
 {
     uint8_t *data = calloc(1, BAND_BYTES);

@@ -292,8 +292,8 @@ static void test_sheet(void **state)
     if (glint_sheet_write(&desc, in_folder("sheet.png"), &error))
         fail_msg("%s", error.message);
     glint_png png = decode_ok(in_folder("sheet.png"));
-    // The columns are as wide as the longest part of a label, "long = 1234567890", 17 characters. Labels have two
-    // lines.
+    // The columns are as wide as the longest part of a label, "long = 1234567890", 17 characters.
+    // Labels have two lines.
     int column = 17 * 8, band = 30 + 2 * 15 + 4 + 12, x = 12 + (column - 50) / 2, y = 12;
     assert_int_equal(code_at(&png, x + 25, y + 15), 255);
     assert_int_equal(code_at(&png, x + column + 12, y), 188);
@@ -310,8 +310,8 @@ static void test_sheet(void **state)
     free(png.codes);
 }
 
-/// The heads of columns, rows and blocks shift the pictures by the size of the heads, and are drawn next to the
-/// pictures.
+/// The heads of columns, rows and blocks shift the pictures by the size of the heads,
+/// and are drawn next to the pictures.
 static void test_sheet_heads(void **state)
 {
     (void)state;

@@ -276,8 +276,8 @@ static void test_reference_known(void **state)
     assert_true(got.max_code == 10 && got.over1 == 0.01 && got.over8 == 0.01);
     assert_true(got.flip > 0 && got.flip < 0.2);
 
-    // Written to a file, exact pixel values lose nothing at either depth. A value off by 0.4 of an 8-bit step loses
-    // only that.
+    // Written to a file, exact pixel values lose nothing at either depth.
+    // A value off by 0.4 of an 8-bit step loses only that.
     glint_picture_error file;
     for (int bits = 8; bits <= 16; bits += 8) {
         assert_int_equal(glint_reference_measure(reference, test, bits, &file, NULL), GLINT_OK);

@@ -99,8 +99,8 @@ static void test_cut(void **state)
 }
 
 /// The pixels of a line with a formula. They are compared where the font and the library are Debian 12's (DejaVu Sans
-/// 2.37, FreeType 2.12.1), which the key identifies. Elsewhere the test compares sizes, which depend on neither hinting
-/// nor antialiasing.
+/// 2.37, FreeType 2.12.1), which the key identifies.
+/// Elsewhere the test compares sizes, which depend on neither hinting nor antialiasing.
 static void test_pinned(void **state)
 {
     (void)state;

@@ -138,8 +138,8 @@ static void test_floor(void **state)
 
 // ---- Properties: every configuration gives the same bits ------------------------------------------------------------
 
-/// A program with one or three outputs that depend on the point, the normal, the view and the surface, some with
-/// special values.
+/// A program with one or three outputs that depend on the point, the normal,
+/// the view and the surface, some with special values.
 static glint_program *random_program(size_t count, double low, double high)
 {
     glint_value out[3];
@@ -538,8 +538,8 @@ static void test_shader(void **state)
 
 // ---- Reuse ----------------------------------------------------------------------------------------------------------
 
-/// A program a sin(b p.x) + c p.y, or with another operation instead of the sine. The tests change one number at a
-/// time.
+/// A program a sin(b p.x) + c p.y, or with another operation instead of the sine.
+/// The tests change one number at a time.
 typedef struct wave {
     double a, b, c;
     bool other;

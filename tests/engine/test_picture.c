@@ -394,8 +394,8 @@ static void test_outline_edges(void **state)
     glint_image_release(image);
 }
 
-/// The lines in the file cover the picture and leave all other pixels untouched: in pixel values and planes, with and
-/// without alpha.
+/// The lines in the file cover the picture and leave all other pixels untouched:
+/// in pixel values and planes, with and without alpha.
 static void test_outline_drawn(void **state)
 {
     (void)state;

@@ -295,8 +295,8 @@ static glint_program *make_chain(int length)
     return program;
 }
 
-/// Sums the derivatives of the chain's light with respect to its inputs, in the first lane. Input k changes by
-/// weight[k].
+/// Sums the derivatives of the chain's light with respect to its inputs, in the first lane.
+/// Input k changes by weight[k].
 static void sum_gradient(const glint_gradient *gradient, double (*inputs)[GLINT_GROUP], double (*weights)[GLINT_GROUP],
                          double (*sum)[GLINT_GROUP])
 {
@@ -335,8 +335,8 @@ static void check_chain(int length, const glint_gradient *gradient)
         assert_true(fabs(sum[c][0] / ((c + 1) * product * slope) - 1) < 1e-12);
 }
 
-/// One program computes all derivatives. If it would be too long, several programs do, and beyond that the gradient
-/// is refused.
+/// One program computes all derivatives. If it would be too long, several programs do,
+/// and beyond that the gradient is refused.
 static void test_gradients(void **state)
 {
     (void)state;

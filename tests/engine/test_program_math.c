@@ -1,5 +1,5 @@
-/// The elementary functions of programs against multiple-precision arithmetic, and derivatives against differences at
-/// 113 bits.
+/// The elementary functions of programs against multiple-precision arithmetic,
+/// and derivatives against differences at 113 bits.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -761,8 +761,8 @@ static void go_back(world *w)
     assert_int_equal(glint_shape_set(w->shapes[4], &place, NULL), GLINT_OK);
 }
 
-/// Tests frames with a few positions and colours that return in any order, so that a frame uses all its cached
-/// results again.
+/// Tests frames with a few positions and colours that return in any order,
+/// so that a frame uses all its cached results again.
 static void frames_that_come_back(void **unused)
 {
     (void)unused;

@@ -221,8 +221,8 @@ static int differing(const glint_image *a, const glint_image *b, int *hits)
     return count;
 }
 
-/// If `moved`, half of the pictures place their samples by a seed, even a single sample per pixel. Returns the number
-/// of hits.
+/// If `moved`, half of the pictures place their samples by a seed, even a single sample per pixel.
+/// Returns the number of hits.
 static int scanned_and_cast(uint64_t first, uint64_t last, bool moved)
 {
     int hits = 0;

@@ -1,5 +1,5 @@
-/// Programs in two parts, and frames in which constants of programs change: cached values give the same bits as a
-/// fresh frame.
+/// Programs in two parts, and frames in which constants of programs change:
+/// cached values give the same bits as a fresh frame.
 #include "engine/program/split.h"
 #include "engine/film/image.h"
 #include "engine/frame/renderer.h"
@@ -427,8 +427,8 @@ static glint_renderer *new_renderer(const char *isa, bool fresh)
     return renderer;
 }
 
-/// Frames of random programs with changing constants: every instruction set in turn, one or several threads, and
-/// little memory.
+/// Frames of random programs with changing constants:
+/// every instruction set in turn, one or several threads, and little memory.
 static void test_frames(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/// Reflected and refracted rays: every instruction set against the scalar reference, and the reference against closed
-/// forms.
+/// Reflected and refracted rays: every instruction set against the scalar reference,
+/// and the reference against closed forms.
 #include "tests/engine/cases/stage_rays.h"
 
 #define ALIGNED _Alignas(64)
@@ -132,8 +132,8 @@ static void test_closed_forms(void **state)
     }
 }
 
-/// Snell's law is reversible: the reversed refracted ray leaves along the incident direction, with the same
-/// reflectance.
+/// Snell's law is reversible: the reversed refracted ray leaves along the incident direction,
+/// with the same reflectance.
 static void test_reversible(void **state)
 {
     (void)state;

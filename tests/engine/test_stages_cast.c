@@ -128,8 +128,8 @@ static void test_cast(void **state)
     run_cases(4 * CASES, 2000, cast_case);
 }
 
-/// Starts a ray on a triangle: either in a random direction, or next to an edge, to cross that edge almost in the
-/// plane.
+/// Starts a ray on a triangle: either in a random direction, or next to an edge,
+/// to cross that edge almost in the plane.
 static void leave_triangle(ray_case *c, uint32_t i, const glint_prim *prim)
 {
     const bool by_edge = one_in(2);
@@ -204,8 +204,8 @@ static void test_leaving(void **state)
     run_cases(2 * CASES, 7000, leaving_case);
 }
 
-/// The scene is built around one tile and seen from a nearby tile: any primitive visible in the nearby tile is at its
-/// border.
+/// The scene is built around one tile and seen from a nearby tile:
+/// any primitive visible in the nearby tile is at its border.
 static void neighbour_case(int precision, bool odd)
 {
     (void)odd;
@@ -328,8 +328,8 @@ static void set_border_camera(glint_camera_args *camera, double distance)
     camera->eye[axis] = -distance * camera->forward[axis];
 }
 
-/// Chooses a ray on the left, right, upper or lower border of a group, and the direction that leads out of the group
-/// there.
+/// Chooses a ray on the left, right, upper or lower border of a group,
+/// and the direction that leads out of the group there.
 static void border_ray(const ray_case *c, double origin[3], double direction[3], double outwards[3])
 {
     const glint_camera_args *camera = &c->camera;

@@ -105,8 +105,8 @@ static void place_lamps(shadow_case *c, double distance)
     }
 }
 
-/// Places the points of a tile. They are usually close together; otherwise the tile's shaft would contain half the
-/// scene.
+/// Places the points of a tile. They are usually close together;
+/// otherwise the tile's shaft would contain half the scene.
 static void place_points(shadow_case *c, double light_distance)
 {
     const scene_plan *plan = &c->plan;

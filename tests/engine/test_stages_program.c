@@ -99,8 +99,8 @@ static void *plain_output(const char *name, array_kind kind, uint32_t count)
     return new_array(gotten, &gotten_count, name, kind, count);
 }
 
-/// A program that selects between numbers by a parity, with only planes as outputs: often a checkerboard, which has a
-/// special kernel.
+/// A program that selects between numbers by a parity, with only planes as outputs:
+/// often a checkerboard, which has a special kernel.
 static void checker_case(int precision, bool odd)
 {
     (void)precision;
@@ -162,8 +162,8 @@ static void random_sums(uint32_t outputs, uint32_t n, bool odd, glint_program_su
     }
 }
 
-/// Runs the sums on the current instruction set. Clears the lanes that are not requested, because they may hold
-/// anything.
+/// Runs the sums on the current instruction set.
+/// Clears the lanes that are not requested, because they may hold anything.
 static void run_sums(glint_program_args *args, glint_program_sums *sums, uint32_t count, uint32_t n)
 {
     for (uint32_t k = 0; k < 3 * count; k++) {

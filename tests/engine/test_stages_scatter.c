@@ -165,8 +165,8 @@ static void test_means(void **state)
     assert_true(fabs(square - 0.5) < 2e-4);
 }
 
-/// For any seed, every 2^m points from a multiple of 2^m on have one point in each of the 2^m boxes, for every box
-/// shape.
+/// For any seed, every 2^m points from a multiple of 2^m on have one point in each
+/// of the 2^m boxes, for every box shape.
 static void test_evenness(void **state)
 {
     (void)state;
@@ -190,8 +190,8 @@ static void test_evenness(void **state)
     }
 }
 
-/// Sequences of different seeds are as independent as random numbers: tests correlations of first points over many
-/// seeds.
+/// Sequences of different seeds are as independent as random numbers:
+/// tests correlations of first points over many seeds.
 static void test_independence(void **state)
 {
     (void)state;

@@ -60,8 +60,8 @@ static void make_materials(glint_shade_material *material, uint32_t count)
     }
 }
 
-/// Makes planes in half of the cases: materials take some parameters from planes, or all light from a shader's
-/// planes.
+/// Makes planes in half of the cases: materials take some parameters from planes,
+/// or all light from a shader's planes.
 static const glint_shade_planes *make_planes(glint_shade_material *material, uint32_t count, uint32_t n,
                                              glint_shade_planes *planes)
 {

@@ -393,8 +393,8 @@ static void no_light_by_an_edge(void **unused)
     }
 }
 
-/// Renders a tessellated floor at any orientation, under a light at any height: the picture is identical with and
-/// without shadows.
+/// Renders a tessellated floor at any orientation, under a light at any height:
+/// the picture is identical with and without shadows.
 static void no_acne(void **unused)
 {
     static soup s;
@@ -500,8 +500,8 @@ static void triangles_against_oracle(void **unused)
         for (int c = 0; c < 3; c++)
             along += (double)n[c] * d[c];
         const double sine = fabs(along) / (length * sqrt(dot(d, d)));
-        // The error from rounding the corners, as seen from the origin, to 53 bits, divided by the sine of the
-        // incidence angle.
+        // The error from rounding the corners, as seen from the origin, to 53 bits,
+        // divided by the sine of the incidence angle.
         double size = 0, far = 0;
         for (int i = 0; i < 9; i++) {
             size = fmax(size, fabs(s.vertices[i / 3][i % 3] - s.vertices[0][i % 3]));
@@ -594,8 +594,8 @@ static void unit_map(const glint_shape_desc *d, quad m[3][4])
         }
 }
 
-/// Solids under random maps: the hit is on the surface, nothing is in front of it, and the normal is perpendicular to
-/// the surface.
+/// Solids under random maps: the hit is on the surface, nothing is in front of it,
+/// and the normal is perpendicular to the surface.
 static void solids_against_oracle(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
@@ -636,8 +636,8 @@ static void solids_against_oracle(void **unused)
                 p[c] = o[c] + (quad)got.t * dir[c];
             if (fabs(outside(&d, m, p, &bound)) > 1e-12)
                 fail_msg("case %d: %g off the surface", n, outside(&d, m, p, &bound));
-            // A step along the normal leads outside. Steps perpendicular to the normal stay on the surface to first
-            // order.
+            // A step along the normal leads outside.
+            // Steps perpendicular to the normal stay on the surface to first order.
             for (int axis = 0; axis < 3; axis++) {
                 double slope[3];
                 for (int c = 0; c < 3; c++) {

@@ -86,8 +86,8 @@ static counts try(const glint_tints *tints, const glint_tint_light *light, doubl
     return out;
 }
 
-/// Tests all kinds of lights, points close together and far apart, and balls of all sizes, some around points and
-/// lights.
+/// Tests all kinds of lights, points close together and far apart, and balls of all sizes,
+/// some around points and lights.
 static void test_rays(void **unused)
 {
     (void)unused;

@@ -1,5 +1,5 @@
-/// Random programs for the tests: a recipe that can be built several times, with and without the builder's
-/// optimisations.
+/// Random programs for the tests: a recipe that can be built several times,
+/// with and without the builder's optimisations.
 #ifndef GLINT_PROGRAM_CASE_H
 #define GLINT_PROGRAM_CASE_H
 

@@ -224,8 +224,8 @@ static inline void place_on_solid(const test_scene *scene, const glint_prim *pri
             prim->center[c] + (solid->forward[c][0] * k[0] + solid->forward[c][1] * k[1] + solid->forward[c][2] * k[2]);
 }
 
-/// Moves a solid so that the line touches its silhouette, or misses it by 1e-16 .. 1e-1 of its radius, if it is a
-/// cylinder.
+/// Moves a solid so that the line touches its silhouette,
+/// or misses it by 1e-16 .. 1e-1 of its radius, if it is a cylinder.
 static inline void graze_solid(const test_scene *scene, glint_prim *prim, const test_line *line)
 {
     const glint_solid *solid = &scene->solids[prim->item];
