@@ -167,8 +167,8 @@ static void closed_forms(void)
 // ---- Noise ----
 
 /// Returns the relative RMS error of 16 samples of a ball's whole surface, half of which is invisible from the point:
-/// the textbook's columns. The ball has radius 1, at a distance `away` and at an angle `tilt` (radians) from the
-/// floor's normal.
+/// the textbook's columns. The ball has radius 1,
+/// at a distance `away` and at an angle `tilt` (radians) from the floor's normal.
 static double surface_noise(double away, double tilt)
 {
     const double place[2] = { away * sin(tilt), away * cos(tilt) }, want = M_PI / (away * away) * cos(tilt);
@@ -233,8 +233,8 @@ typedef struct shadow {
     double light, height, ball, between; ///< radius and height of the light; radius and height of the occluder
 } shadow;
 
-/// Returns the share of the light that reaches the floor at x, with 1024 samples: 0 in the umbra, 1 outside the
-/// penumbra.
+/// Returns the share of the light that reaches the floor at x, with 1024 samples:
+/// 0 in the umbra, 1 outside the penumbra.
 static double share(const shadow *s, double x, glint_precision precision)
 {
     const hard_sphere ball = { { 0, s->between, 0 }, s->ball };

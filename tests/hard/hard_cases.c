@@ -50,8 +50,8 @@ static judgement judge_answer(const hard_ray *ray, const hard_sphere *sphere, co
     return judge_sphere(ray, sphere, &want, got->hit, &got->at);
 }
 
-/// Renders one pixel along the ray. Returns whether it hits; *t gets the distance in units of |d|, from the float32
-/// depth pass.
+/// Renders one pixel along the ray. Returns whether it hits;
+/// *t gets the distance in units of |d|, from the float32 depth pass.
 static bool framed(const hard_ray *ray, const hard_sphere *sphere, glint_precision precision, double *t)
 {
     float depth[3], id[3];
@@ -211,8 +211,8 @@ static void rounded_variants(const ray_case *k)
 
 // ---- Several objects ----
 
-/// S28, S38: a ray hits the outer of two concentric spheres, in any order of definition, and the first of two equal
-/// spheres.
+/// S28, S38: a ray hits the outer of two concentric spheres, in any order of definition,
+/// and the first of two equal spheres.
 static void check_pairs(void)
 {
     hard_test("S28, S38", "concentric and equal spheres");

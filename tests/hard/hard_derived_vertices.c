@@ -205,8 +205,8 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
 
 // ---- The comparison -----------------------------------------------------------------------------------------------
 
-/// Returns whether any pixel depends on the number. A flat face depends on the camera only through its distance or
-/// its highlight.
+/// Returns whether any pixel depends on the number.
+/// A flat face depends on the camera only through its distance or its highlight.
 static bool is_read(const world *w, const number *n)
 {
     if (!strcmp(n->field, "height"))

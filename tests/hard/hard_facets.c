@@ -61,8 +61,8 @@ static double half_tangent(const double n[3], const double l[3], const double v[
     return across / along;
 }
 
-/// Compares one pair of directions, by `evaluate` and in a frame in double. Returns the larger error, relative to the
-/// allowed one.
+/// Compares one pair of directions, by `evaluate` and in a frame in double.
+/// Returns the larger error, relative to the allowed one.
 static double compare(bool beckmann, double roughness, double f0, const double n[3], const double l[3],
                       const double v[3], hard_values *shown)
 {

@@ -250,8 +250,8 @@ typedef struct bare {
     glint_light_desc light;
 } bare;
 
-/// Makes a shape with the eye outside or inside, and with the light outside, near or far, or inside together with the
-/// eye.
+/// Makes a shape with the eye outside or inside, and with the light outside, near or far,
+/// or inside together with the eye.
 static bare random_bare(void)
 {
     bare b = { .is_plane = chance(0.2), .twice = chance(0.3) };

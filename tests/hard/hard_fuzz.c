@@ -115,8 +115,8 @@ static bool same_sphere(const hard_sphere *a, const hard_sphere *b)
     return a->r == b->r && a->c[0] == b->c[0] && a->c[1] == b->c[1] && a->c[2] == b->c[2];
 }
 
-/// Adds all spheres as one shape, whose element indices equal the spheres' indices, or each sphere as a separate
-/// shape.
+/// Adds all spheres as one shape, whose element indices equal the spheres' indices,
+/// or each sphere as a separate shape.
 static void add_many(glint_scene *scene, const hard_sphere *spheres, int count, glint_shape *shapes[MANY], bool as_one)
 {
     for (int i = 0; i < count && !as_one; i++)
@@ -146,8 +146,8 @@ static int which(const glint_hit *got, glint_shape *const shapes[MANY], int coun
     return -1;
 }
 
-/// The ray must hit the engine's sphere, no other sphere may be clearly nearer, and no earlier sphere may be
-/// identical.
+/// The ray must hit the engine's sphere, no other sphere may be clearly nearer,
+/// and no earlier sphere may be identical.
 static judgement judge_many(const hard_ray *ray, const hard_sphere *spheres, int count, bool hit, int index,
                             const glint_hit *got)
 {

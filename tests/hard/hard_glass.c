@@ -288,8 +288,8 @@ static void total(void)
 }
 
 /// A random prism with total reflections as above, of any length, size, index, angle, position and orientation. *out
-/// gets the transmitted light, *through the true value, transmission^2. Returns false for prisms close to the
-/// critical angle.
+/// gets the transmitted light, *through the true value, transmission^2.
+/// Returns false for prisms close to the critical angle.
 static bool random_prism(double *out, double *through)
 {
     static const double white[3] = { 1, 1, 1 };

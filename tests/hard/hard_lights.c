@@ -1,6 +1,6 @@
 /// Test cases for lights: at the shaded point, inside shapes, far away, spots, area lights, and sums of very many
-/// lights. Each case is rendered in double and float, compared with the textbook's formula, and repeated with other
-/// numbers.
+/// lights. Each case is rendered in double and float, compared with the textbook's formula,
+/// and repeated with other numbers.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
@@ -116,8 +116,8 @@ static void far_and_near(void)
 
 // ---- Inside and outside of an opaque ball ----
 
-/// L2, L3, L3b: the visible light on a ball of radius 1 straight ahead, for an eye and a light inside or outside the
-/// ball.
+/// L2, L3, L3b: the visible light on a ball of radius 1 straight ahead,
+/// for an eye and a light inside or outside the ball.
 static void within(void)
 {
     static const struct {

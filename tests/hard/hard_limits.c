@@ -1,6 +1,6 @@
 /// Pictures at the limits of valid input: scenes scaled by powers of two, numbers near the largest, the largest
-/// sizes, the most lights, the most spheres, and empty scenes; for each instruction set and several numbers of
-/// threads.
+/// sizes, the most lights, the most spheres, and empty scenes;
+/// for each instruction set and several numbers of threads.
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/still.h"
 
@@ -167,8 +167,8 @@ static glint_scene *extreme_scene(void)
     return scene;
 }
 
-/// No plane has NaN or negative values, values above the largest float are counted, and written files hold finite
-/// numbers.
+/// No plane has NaN or negative values, values above the largest float are counted,
+/// and written files hold finite numbers.
 static void check_finite(uint64_t scenes)
 {
     hard_test("finite", "extreme numbers");

@@ -172,8 +172,8 @@ static hard_ray aim_shared_edge(double corner[3][3])
     return ray;
 }
 
-/// G1: a ray in a triangle's plane misses the triangle by at least one step. Rounding tilts the ray, but by less than
-/// that.
+/// G1: a ray in a triangle's plane misses the triangle by at least one step.
+/// Rounding tilts the ray, but by less than that.
 static void in_plane(uint64_t rays)
 {
     const uint32_t corners[3] = { 0, 1, 2 }, three = 3;

@@ -265,8 +265,8 @@ static void sweep_shininess(uint64_t count)
 
 // ---- Pixel values ----
 
-/// Renders a row of pixels with these linear values: an orthographic camera sees one sphere per pixel, lit only by
-/// ambient light.
+/// Renders a row of pixels with these linear values:
+/// an orthographic camera sees one sphere per pixel, lit only by ambient light.
 static glint_image *row_of(const double *values, int count)
 {
     static const double one[3] = { 1, 1, 1 }, none[3] = { 0 };

@@ -136,8 +136,8 @@ typedef struct grazed {
     double radius;
 } grazed;
 
-/// Makes a disk, and a ray that hits the disk's plane at a cosine of 1e-16 .. 1e-2, inside the disk, at its rim or
-/// outside.
+/// Makes a disk, and a ray that hits the disk's plane at a cosine of 1e-16 .. 1e-2,
+/// inside the disk, at its rim or outside.
 static grazed graze(void)
 {
     grazed g;

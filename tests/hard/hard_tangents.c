@@ -92,8 +92,8 @@ static bool is_steep(glint_op op, quad a, quad b, quad c)
     }
 }
 
-/// Computes all nodes. Returns false when a node is steep, or when its value is far from 1, where differences are
-/// inaccurate.
+/// Computes all nodes. Returns false when a node is steep, or when its value is far from 1,
+/// where differences are inaccurate.
 static bool evaluate(const formula *f, const quad *leaves, quad value[LEAVES + NODES])
 {
     memcpy(value, leaves, LEAVES * sizeof *leaves);

@@ -86,8 +86,8 @@ void aim_at_sphere(hard_ray *ray, hard_sphere *sphere)
         ray->o[c] = sphere->c[c] - u[c] * away;
     random_side(u, side);
     const double miss = sphere->r * (chance(0.5) ? near_one(1e-16, 1e-2) : uniform(0, 1.2));
-    // From far away, the line passes the centre at the distance `miss`. From nearby or inside, the direction is
-    // random.
+    // From far away, the line passes the centre at the distance `miss`.
+    // From nearby or inside, the direction is random.
     const double sine = away > miss ? miss / away : 0, cosine = sqrt(1 - sine * sine);
     for (int c = 0; c < 3; c++)
         ray->d[c] = away > miss ? u[c] * cosine + side[c] * sine : side[c] + u[c] * uniform(-1, 1);

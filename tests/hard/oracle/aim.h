@@ -9,8 +9,8 @@
 /// length, integer or nearly vanishing components.
 void aim_at_sphere(hard_ray *ray, hard_sphere *sphere);
 
-/// Makes a plane and a ray. Half of the rays are grazing, at 1e-2 .. 1e-16. Origins are on the plane, near it and far
-/// away.
+/// Makes a plane and a ray. Half of the rays are grazing, at 1e-2 .. 1e-16.
+/// Origins are on the plane, near it and far away.
 void aim_at_plane(hard_ray *ray, hard_plane *plane);
 
 /// Makes `count` spheres around one point, concentric with radii a few ulp apart, identical, or separate, and a ray

@@ -205,8 +205,8 @@ static void along_side(const hard_solid *s, const double p[3], double size, doub
         out[c] = s->desc.top[c] + way * (s->desc.top[c] - p[c]) + nudge * uniform(-1, 1);
 }
 
-/// Chooses a point on a tangent at a point of a torus, at distance `reach`, so that a ray from there nearly touches
-/// the torus.
+/// Chooses a point on a tangent at a point of a torus, at distance `reach`,
+/// so that a ray from there nearly touches the torus.
 static void beside(const hard_solid *s, const double p[3], double reach, double out[3])
 {
     const glint_shape_desc *d = &s->desc;

@@ -19,8 +19,8 @@ static double normal_error(const truth *want, const glint_hit *got)
     return error;
 }
 
-/// Returns whether t is within the checked range. Outside the range of double, the engine's t must overflow or vanish
-/// as well.
+/// Returns whether t is within the checked range.
+/// Outside the range of double, the engine's t must overflow or vanish as well.
 static bool representable(double t) { return t > 0x1p-960 && t < 0x1p1020; }
 
 static judgement judge(const truth *want, bool hit, const glint_hit *got, bool too_close, double t_allowed_ulp,

@@ -1,7 +1,7 @@
 /// The engine's allowed error: 4 ulp of t, times the magnification of the inputs' rounding. Half an ulp of the
 /// direction, of the radius, and of o - c where that is not exact, moves the hit by so much that a more precise
-/// answer would be meaningless. (Where o - c is exact, the roundings of o and c do not count: a user may mean these
-/// values.)
+/// answer would be meaningless. (Where o - c is exact, the roundings of o and c do not count:
+/// a user may mean these values.)
 #ifndef HARD_JUDGE_H
 #define HARD_JUDGE_H
 

@@ -1,5 +1,5 @@
-/// Truth in multiple precision: 400 bits, and, where those do not decide, enough bits for exact products of four
-/// doubles.
+/// Truth in multiple precision: 400 bits, and, where those do not decide,
+/// enough bits for exact products of four doubles.
 #include "tests/hard/oracle/oracle.h"
 
 #include <math.h>
@@ -85,8 +85,8 @@ static bool set_equation(numbers *k, const hard_ray *ray, const hard_sphere *sph
     return bits == BITS_EXACT || !lost(k->disc, k->size, bits - 120);
 }
 
-/// Puts the nearest positive root into k->x, without subtracting nearly equal numbers. Returns false when there is
-/// none.
+/// Puts the nearest positive root into k->x, without subtracting nearly equal numbers.
+/// Returns false when there is none.
 static bool nearest_root(numbers *k)
 {
     const int outside = mpfr_sgn(k->c), away = mpfr_sgn(k->b);
@@ -216,8 +216,8 @@ static void make_unit(mpfr_t v[3])
     mpfr_clear(length);
 }
 
-/// Computes the cosine that the highlight raises to a power: r.v = 2 (n.l)(n.v) - l.v, or n.h, or 0 where h is
-/// undefined.
+/// Computes the cosine that the highlight raises to a power:
+/// r.v = 2 (n.l)(n.v) - l.v, or n.h, or 0 where h is undefined.
 static void highlight_cosine(mpfr_t out, bool blinn, mpfr_t n[3], mpfr_t l[3], mpfr_t v[3], mpfr_t nl, mpfr_t nv)
 {
     if (!blinn) {

@@ -26,8 +26,8 @@ typedef struct truth {
     double n[3]; ///< outward unit normal at the hit; for a plane, the plane's own normal
     double cosine; ///< |n . d| / |d| at the hit
     /// How far the decision between hit and miss is from changing. For a sphere: the difference between the radius
-    /// and the line's distance from the centre, in units of |f| + r, f = o - c. For a plane: |n . d| in units of |n|
-    /// |d|.
+    /// and the line's distance from the centre, in units of |f| + r, f = o - c.
+    /// For a plane: |n . d| in units of |n| |d|.
     double tangency;
     double surface; ///< distance of the ray's origin from the surface; for a sphere in units of |f| + r, for a plane
         ///< of |o| + |p|

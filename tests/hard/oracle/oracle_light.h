@@ -14,8 +14,8 @@ double oracle_ggx(double alpha, double angle);
 double oracle_facets(bool beckmann, double roughness, double f0, const double n[3], const double l[3],
                      const double v[3]);
 
-/// Returns the strength of a spot light along `to_point`: smoothstep of the cosine between outer and inner, times
-/// cos^exponent.
+/// Returns the strength of a spot light along `to_point`:
+/// smoothstep of the cosine between outer and inner, times cos^exponent.
 double oracle_spot(double inner_rad, double outer_rad, double exponent, const double axis[3], const double to_point[3]);
 
 /// Returns 1 - cos of the half angle that a ball subtends whose radius is `ratio` times its distance.

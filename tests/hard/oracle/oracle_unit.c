@@ -68,8 +68,8 @@ static void cut_cone(unit_span *s, const unit_ray *r, quad g)
     }
 }
 
-/// Cuts with a disk. A plane that is offset by g moves the hit point in proportion to g and to the ray's slope along
-/// the plane.
+/// Cuts with a disk. A plane that is offset by g moves the hit point in proportion to g and
+/// to the ray's slope along the plane.
 static void cut_disk(unit_span *s, const unit_ray *r, quad g)
 {
     if (r->e[2] == 0) {

@@ -14,8 +14,8 @@ typedef struct shell {
     double middle[3];
 } shell;
 
-/// Makes a box or ball of quads that need not be planar, at any position. The two sides of a seam have identical
-/// coordinates.
+/// Makes a box or ball of quads that need not be planar, at any position.
+/// The two sides of a seam have identical coordinates.
 void make_shell(shell *s, bool ball, double size, double away);
 void add_shell(glint_scene *scene, const shell *s, glint_material *material);
 

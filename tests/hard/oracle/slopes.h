@@ -1,5 +1,5 @@
-/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one derivative, and the error of that
-/// derivative.
+/// Shared by the tests of derivatives: vectors in 113 bits, a picture with one derivative,
+/// and the error of that derivative.
 #ifndef GLINT_HARD_SLOPES_H
 #define GLINT_HARD_SLOPES_H
 

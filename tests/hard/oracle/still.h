@@ -28,14 +28,14 @@ typedef struct still_pixel {
 } still_pixel;
 
 /// The textbook's tracer: (-b +- sqrt(b^2 - 4ac)) / 2a, p = o + t d, n = (p - c) / r, shadows beyond an epsilon. In
-/// 113 bits it gives the truth for scenes whose numbers span at most twelve digits; in 24 and 53 bits it serves for
-/// comparison.
+/// 113 bits it gives the truth for scenes whose numbers span at most twelve digits;
+/// in 24 and 53 bits it serves for comparison.
 still_pixel still_trace_113(const hard_still *still, int width, int height, int x, int y);
 still_pixel still_trace_53(const hard_still *still, int width, int height, int x, int y);
 still_pixel still_trace_24(const hard_still *still, int width, int height, int x, int y);
 
-/// Makes a heap of spheres of about the size `scale` within `away` of the origin, sometimes on a ground, in a room,
-/// or both.
+/// Makes a heap of spheres of about the size `scale` within `away` of the origin,
+/// sometimes on a ground, in a room, or both.
 hard_still still_random(double scale, double away);
 
 /// Makes the same scene for the engine.
