@@ -19,7 +19,7 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h b
     case $header in
     */simd/avx2.h) alone "$header" "$@" -mavx2 -mfma ;;
     */simd/avx512.h) alone "$header" "$@" -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma ;;
-    # generic.h includes neon.h on ARM and wasm.h on WebAssembly; ref.c includes its headers once for double, once for float
+    # generic.h includes neon.h on ARM and wasm.h on WebAssembly; ref.c includes its headers for double and for float
     */simd/neon.h | */simd/wasm.h | engine/stages/ref/*.h) ;;
     engine/stages/contract/*.h) alone "$header" "$@" ;;
     engine/stages/*/*.h)

@@ -23,8 +23,8 @@ typedef struct embree_scene {
     enum RTCIntersectContextFlags flags;
 } embree_scene;
 
-/// The flags that are faster for each scene, as measured: with only five spheres, the flag for coherent packets is
-/// slower.
+/// The flags that are faster for each scene, as measured:
+/// with only five spheres, the flag for coherent packets is slower.
 static enum RTCIntersectContextFlags best_flags(const bench_scene *plain)
 {
     bool few = plain->sphere_count > 0 && plain->sphere_count < 100;

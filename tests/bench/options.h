@@ -1,5 +1,5 @@
-/// The options of one run of a side, from words like `frame scene=1k threads=2 shadows=0`, and the printing of its
-/// results.
+/// The options of one run of a side, from words like `frame scene=1k threads=2 shadows=0`,
+/// and the printing of its results.
 #ifndef GLINT_BENCH_OPTIONS_H
 #define GLINT_BENCH_OPTIONS_H
 
@@ -15,8 +15,8 @@ typedef struct bench_options {
     const char *change; ///< the change between frames of a job: "light", "sphere", "shininess", "number" (in the
         ///< pattern) or "none" (default)
     const char *pattern; ///< "checker", "octaves" or "marble" for the first material, or "phong", a shader for all
-        ///< materials; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function"; default
-        ///< "none"
+        ///< materials; for POV-Ray "checker" and "marble",
+        ///< or "checker-function" and "marble-function"; default "none"
     const char *derivative; ///< parameter of a derivative pass, only for glint: "eye", "lamp", "shininess" or "none"
         ///< (default)
     int threads; ///< number of threads; default 1

@@ -1,5 +1,5 @@
-/// Shared by the two packet tracers hand.c and embree.c: the scene in vectors of sixteen, and the frame in bands of
-/// four rows.
+/// Shared by the two packet tracers hand.c and embree.c:
+/// the scene in vectors of sixteen, and the frame in bands of four rows.
 #ifndef GLINT_BENCH_PACKET_H
 #define GLINT_BENCH_PACKET_H
 

@@ -7,8 +7,8 @@
 
 /// Returns the nearest hits of rays from the eye. `dir` has unit length.
 static inline packet_hit trace(const packet_scene *s, vec dir);
-/// Returns the lanes of `mask` that have an occluder between the point and the light. The light is at `distance`
-/// along `l`.
+/// Returns the lanes of `mask` that have an occluder between the point and the light.
+/// The light is at `distance` along `l`.
 static inline vm hidden(const packet_scene *s, vec point, vec l, vf distance, vm mask);
 
 typedef struct light_sum {

@@ -1,5 +1,5 @@
-/// The points that programs are timed with: the inputs of a pattern or shader for 128 points, and buffers for the
-/// results.
+/// The points that programs are timed with:
+/// the inputs of a pattern or shader for 128 points, and buffers for the results.
 #ifndef GLINT_BENCH_PROGRAM_POINTS_H
 #define GLINT_BENCH_PROGRAM_POINTS_H
 

@@ -192,8 +192,8 @@ static void make_molecule(bench_scene *s, size_t count)
 
 // ---- Spheres on a floor, which shadow it and each other ----
 
-/// Puts spheres on a floor, a 40 x 40 part of the top of a large ball. The radii scale with the spacing, as in a
-/// cloud.
+/// Puts spheres on a floor, a 40 x 40 part of the top of a large ball.
+/// The radii scale with the spacing, as in a cloud.
 static void make_floor(bench_scene *s, size_t count)
 {
     static const float ground[4] = { 0, -1000, 0, 1000 }, side = 40;

@@ -71,12 +71,12 @@ typedef struct bench_scene {
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);
 
-/// Stores the position of lamp `i` of `count`. A single lamp is at the scene's position; several lamps are on a ring
-/// around it.
+/// Stores the position of lamp `i` of `count`.
+/// A single lamp is at the scene's position; several lamps are on a ring around it.
 void bench_lamp(const bench_scene *scene, int i, int count, double position[3]);
 
-/// The jobs of 60 frames, counted from 0: the position of a lamp that circles once, and the shininess of a highlight
-/// that shrinks.
+/// The jobs of 60 frames, counted from 0: the position of a lamp that circles once,
+/// and the shininess of a highlight that shrinks.
 void bench_job_light(int frame, double position[3]);
 double bench_job_shininess(int frame);
 

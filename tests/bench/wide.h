@@ -1,8 +1,8 @@
 /// Vectors of sixteen floats for the programs that glint is compared with: AVX-512, with everything that -ffast-math
 /// allows.
 ///
-/// The logarithm, the power and the sRGB curve are polynomials of the mantissa with an error of 3e-6, far below an
-/// 8-bit step.
+/// The logarithm, the power and the sRGB curve are polynomials of the mantissa with an error
+/// of 3e-6, far below an 8-bit step.
 #ifndef GLINT_BENCH_WIDE_H
 #define GLINT_BENCH_WIDE_H
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Memory leaks: the memory of a run must not grow with the number of scenes, meshes and frames that it has released. A
 # script reads the resident bytes of its own process after a full collection. The test compares the minimum of the
-# second tenth of the rounds with the minimum of the last tenth (memory cached by malloc varies by a megabyte). Prints
-# TAP.
+# second tenth of the rounds with the minimum of the last tenth (memory cached by malloc varies
+# by a megabyte). Prints TAP.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 if [ -n "${PRELOAD:-}" ] || ldd "$glint" | grep -qE "lib[at]san"; then

@@ -86,8 +86,8 @@ done
 check "the command is glint's: $(grep command= notes)" grep -qx "command=glint relight small.exr -o out.png --light key=2.5 --light key=#ffd9a0 --light 'the fill=0' --light 'ä=0.3' --exposure 0.5" notes
 check "the lines are the script's: $(grep lua= notes)" grep -qx 'lua=key.color = { 2.5 \* key.color\[1\], 1.73468 \* key.color\[2\], 0.878831 \* key.color\[3\] }' notes
 
-# The browser's own clock stops while it draws. The difference of two runs of different length gives the time of a
-# picture.
+# The browser's own clock stops while it draws.
+# The difference of two runs of different length gives the time of a picture.
 run_for() { # PICTURES: seconds
     local start=$EPOCHREALTIME
     page large "mixer.set({ lights: LIGHTS.map((l, k) => ({ strength: 0.5 + 0.1 * k, color: '#ffd9a0' })) });

@@ -46,8 +46,8 @@ for n in 1 2 3; do
     check "frame $n of parts" "$glint" join film/*_$n.png -o film/joined.png -q
     check "is frame $n" cmp film/joined.png film/$n.png
 done
-# An open shutter with moving lights, then with moving objects. A file is not rendered again while the shutter is
-# unchanged.
+# An open shutter with moving lights, then with moving objects.
+# A file is not rendered again while the shutter is unchanged.
 scene=$root/scripts/shutter.lua
 for moves in lamp all; do
     options="-f 2 --set moves=$moves --set times=3 -o f.png --alpha --bits 16"

@@ -2,8 +2,8 @@
 # Comparison with POV-Ray. Every pixel of the workshop scene at 1280x720, 16-bit linear, must be within 1/65535 of
 # POV-Ray's pixel, except at most 0.01 % of the pixels (ties at shadow edges and silhouettes), which the test prints.
 # With a lens both pictures have noise: blocks of 4 x 4 pixels must agree within 0.0015 of full scale (root mean
-# square). A lens that is a tenth wider differs by 0.0026, a lens that is a tenth narrower by 0.0016. The mapping is
-# in povray/pov.lua.
+# square). A lens that is a tenth wider differs by 0.0026, a lens that is a tenth narrower by 0.0016.
+# The mapping is in povray/pov.lua.
 set -u
 build=${BUILD:-build}
 glint=${GLINT:-$build/glint}

@@ -78,8 +78,8 @@ check_pictures() {
     done
 }
 
-# Files in backquotes are relative to the root, the page's folder or a folder below it; links are relative to the
-# page's folder.
+# Files in backquotes are relative to the root, the page's folder or a folder below it;
+# links are relative to the page's folder.
 check_paths() {
     local folder path
     folder=$root/$(dirname "$1")

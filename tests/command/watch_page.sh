@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The page of glint watch in headless Chromium, controlled over its debugging pipe (messages end in a zero byte). The
 # picture appears, a save replaces it, an error covers it until it is fixed, a warning appears below, frames can be
-# scrubbed, sliders set parameters, and a value out of range is reported. Without Chromium the test is skipped with a
-# message.
+# scrubbed, sliders set parameters, and a value out of range is reported.
+# Without Chromium the test is skipped with a message.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {

@@ -32,8 +32,8 @@ function tests.published_colours()
   end
 end
 
--- K. Moreland: CIELAB in polar coordinates, over white; Table and listing of "Diverging Color Maps for Scientific
--- Visualization (Expanded)".
+-- K. Moreland: CIELAB in polar coordinates, over white;
+-- Table and listing of "Diverging Color Maps for Scientific Visualization (Expanded)".
 local function moreland(share)
   local function to_msh(r, g, b)
     r, g, b = light(r), light(g), light(b)

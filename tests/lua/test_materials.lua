@@ -134,8 +134,8 @@ end
 
 -- ---- Physics ----
 
--- Returns the albedo towards v: the midpoint rule over rings around the mirror direction, which are denser close to
--- it.
+-- Returns the albedo towards v: the midpoint rule over rings around the mirror direction,
+-- which are denser close to it.
 local function albedo(m, v, n)
   local sum, r = 0, { -v[1], -v[2], v[3] }
   local side = unit(cross(r, math.abs(r[1]) < 0.5 and { 1, 0, 0 } or { 0, 1, 0 }))

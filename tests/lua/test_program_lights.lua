@@ -1,5 +1,5 @@
--- Programs under every kind of light: Lambert's law as a shader equals the built-in model, and a bump without slope
--- changes nothing.
+-- Programs under every kind of light: Lambert's law as a shader equals the built-in model,
+-- and a bump without slope changes nothing.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
