@@ -277,7 +277,7 @@ static void no_room_for_a_while(void **unused)
         paint(s.paint[0], 0.3);
         check(&s, s.scene);
         paint(s.paint[1], 0.6);
-        check(&s, s.scene); // tiles without the ball equal those of the first picture
+        check(&s, s.scene); // tiles without the ball equal the tiles of the first picture
         for (int i = 0; i < LAMPS; i++)
             glint_light_release(lamps[i]);
         free_stand(&s);

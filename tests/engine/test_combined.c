@@ -94,9 +94,8 @@ static void invert(quad m[3][4], quad out[3][4])
     }
 }
 
-/// Stores the leaf's inverse map. The unit shape's z axis is the cylinder's axis from base to top, or the cone's from
-/// apex to base. In every leaf, that axis
-/// points along y.
+/// Stores the leaf's inverse map. The unit shape's z axis is the cylinder's axis from base to top, or the cone's axis
+/// from apex to base. In every leaf, that axis points along y.
 static void note_part(node *n, const glint_shape_desc *d, const glint_transform *around)
 {
     const glint_transform map = glint_transform_product(around, &d->transform);

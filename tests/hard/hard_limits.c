@@ -108,7 +108,7 @@ static void check_machines(int stills)
     }
 }
 
-// ---- Numbers near the largest ----
+// ---- Numbers near the largest double ----
 
 static double huge(void) { return chance(0.3) ? 0 : chance(0.3) ? uniform(0, 1) : log_uniform(1e-300, 1e300); }
 

@@ -279,7 +279,7 @@ function tests.errors()
   refused("union.add: one shape expected", whole.add, whole)
   refused("union.radius: no such field", function() whole.radius = 2 end)
   refused("merge", function() return glint.merge end)
-  -- adds children later
+  -- a group that gets its children later
   local group = glint.group {}
   whole:add(group)
   group:add(glint.disk { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 })

@@ -112,7 +112,7 @@ local function random_pair()
 end
 
 -- The error bound of float arithmetic: roundings of 2^-24, and as many in the exponent if there is one. A power below
--- 2^-40 is 0. Beckmann's exponent uses the half vector's squared cosine as 1 minus the squared sine, one rounding of 1.
+-- 2^-40 is 0. Beckmann's exponent takes the squared cosine from 1 minus the squared sine, which adds a rounding of 1.
 local function definitions()
   math.randomseed(4)
   for _, fields in ipairs(MATERIALS) do

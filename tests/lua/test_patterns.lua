@@ -126,7 +126,7 @@ function tests.checker_is_the_parity_of_floors()
   end
 end
 
--- Compares with sums over the box. The surface has one value of p.z, so the cells on either side are not visible.
+-- Compares with sums over the footprint, a box in x and y. All points have one z: cells next to it in z do not count.
 function tests.footprints_are_box_integrals()
   math.randomseed(5)
   for _ = 1, 100 do
