@@ -14,7 +14,7 @@
 #define GLINT_REFINE_SPREAD 2 ///< pixels, in every direction
 
 /// Called before a base is rendered into `image`, which must live until the choice. `desc`: the description of the
-/// base, with the threshold. Allocates the base's tiles; existing tiles keep their keys. GLINT_ERR_NOMEM.
+/// base, with the threshold. Allocates the base's tiles; existing tiles keep their keys. Fails with GLINT_ERR_NOMEM.
 glint_status glint_refine_begin(glint_refine *refine, const glint_stages *stages, const glint_image *image,
                                 const glint_render_desc *desc, glint_error *error);
 /// Called after the base is rendered: collects the results of the tiles, compares pixels across borders of tiles, and

@@ -112,8 +112,8 @@ static void make_rows(const glint_tile *tile, const tile_values *values, uint32_
 static void copy_column(const glint_tile *tile, const float *from, float *to)
 {
     const size_t row = (size_t)tile->groups_across * GLINT_GROUP;
-    for (uint32_t y = 0; y < tile->height; y += 4, from += row, to += 4) // up to 3 rows below the image: in memory, and
-        for (uint32_t r = 0; r < 4; r++) // are not read
+    for (uint32_t y = 0; y < tile->height; y += 4, from += row, to += 4) // up to 3 rows below the image are
+        for (uint32_t r = 0; r < 4; r++) // copied, too; they are in memory, and nothing reads the copies
             to[r] = from[4 * r];
 }
 

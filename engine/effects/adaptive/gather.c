@@ -19,7 +19,6 @@ struct glint_gathered {
     _Alignas(64) uint32_t numbers[GLINT_TILE_SAMPLES]; ///< a result while it is reordered
     _Alignas(64) double point_light[2][3]
                                    [GLINT_TILE_SAMPLES]; ///< light of faces and vertices per sample: diffuse, specular
-        ///< sample
     bool has_point_light;
     uint16_t active[GLINT_TILE_GROUPS]; ///< `active` and the next members: saved from the tile
     uint32_t group_count, groups_across;

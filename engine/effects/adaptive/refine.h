@@ -7,9 +7,9 @@
 /// borders of tiles are compared when all tiles are rendered (effects/adaptive/choose.h), so that the choice does not
 /// depend on tiles, threads or the cache.
 ///
-/// Two of eight neighbours are both chosen if they show two objects, or one object and nothing; if their normals are
-/// more than 25.8 degrees apart; or if their pixel values differ by more than the threshold. This difference is the
-/// sum over red, green and blue, in units of the value for white, in sRGB, like POV-Ray's +A.
+/// A pixel and one of its eight neighbours are both chosen if they show two objects, or one object and nothing; if
+/// their normals are more than 25.8 degrees apart; or if their pixel values differ by more than the threshold. This
+/// difference is the sum over red, green and blue, in units of the value for white, in sRGB, like POV-Ray's +A.
 ///
 /// A base without pixel values uses estimates, which need no table and are vectorised. Exact values are only computed
 /// where the estimates cannot decide.
@@ -29,7 +29,7 @@ typedef struct glint_refine_tile {
     uint64_t pixels; ///< stamp of the compared pixels of the base, see glint_film_stamp; 0: unknown
     // Chosen pixels, for each row from the top: one bit per pixel, the leftmost lowest.
     uint32_t inside[GLINT_TILE_HEIGHT]; ///< pixels that differ from another one of the tile
-    uint32_t chosen[GLINT_TILE_HEIGHT]; ///< pixels that differ from any other
+    uint32_t chosen[GLINT_TILE_HEIGHT]; ///< pixels that differ from one of any tile; with a lens also pixels near these
     uint32_t above; ///< pixels of the first row that differ from one in the tiles above
     uint64_t clipped, nonfinite; ///< counts of the base's pixels, if it has pixel values
     glint_refine_range range; ///< the range of all pixels

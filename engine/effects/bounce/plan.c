@@ -147,8 +147,8 @@ static void bound_light(glint_plan *plan)
     plan->indirect.least = GLINT_BOUNCE_LOSS / (4 * plan->brightest * geometric(most, depth));
 }
 
-/// If mirror and transmission add up to less than 1, they divide a ray's weight; above, the number of rays doubles at
-/// each surface.
+/// Refuses a large max_depth if mirror and transmission add up to more than 1 (`most`): then the number of rays
+/// doubles at each surface. Up to 1, they divide a ray's weight.
 static glint_status check_depth(const glint_plan *plan, double most, glint_error *error)
 {
     if (most <= 1 || plan->desc.max_depth <= GLINT_BOUNCE_DEPTH)

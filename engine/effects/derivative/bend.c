@@ -78,7 +78,7 @@ static void curve_solid(const glint_solid *solid, const glint_prim *prim, const 
     turn_unit(hit->normal, vec_dot(normal, hit->normal), turned, out);
 }
 
-/// See glint_bend_shares. f, g: the sides from the first corner; gradient: their cross product
+/// Computes the weights of glint_bend_shares. f, g: the sides from the first corner; gradient: their cross product.
 static void find_shares_of(const double f[3], const double g[3], const double gradient[3], const double at[3], double out[3])
 {
     const double size = vec_dot(gradient, gradient);

@@ -97,8 +97,8 @@ void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
-/// Returns a light in the form for all groups, except for GLINT_EMIT_CONE. The position of a plain light is copied to
-/// every lane.
+/// Returns a light in the form that kernels read, the same for all groups. The position of a plain light is copied to
+/// every lane. For GLINT_EMIT_CONE, glint_derivative_take_cone fills in each group.
 static glint_derivative_source source_of(glint_tile *tile, const glint_plan_light *light)
 {
     glint_derivative_work *work = glint_derivative_of(tile);

@@ -15,7 +15,8 @@
 
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
-/// Phong and Blinn-Phong; see power_init in plan/shading.c. `even`: the normalising factor is in no plane.
+/// Sets up the highlight of Phong or Blinn-Phong with its slopes, like power_init in plan/shading.c. even: the
+/// exponent, and so the normalising factor, is a constant.
 static void power_material(glint_derivative_material *out, const glint_material_desc *desc, bool even)
 {
     const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
@@ -105,7 +106,7 @@ static void shader_material(glint_derivative_material *out, uint32_t inputs)
         out->shininess.slope = 0;
 }
 
-/// planes: of glint_shade_material.
+/// Fills a material. planes: as in glint_shade_material. light: Ia.
 static void fill_material(glint_derivative_material *out, const glint_material_desc *desc,
                           const glint_material_desc *slopes, uint32_t planes, const glint_dual light[3])
 {
@@ -168,7 +169,7 @@ static void fill_spot(glint_derivative_light *out, const glint_light_desc *desc,
     dual_normalize(out->axis);
 }
 
-/// See light_init in plan/shading.c. `count`: of its samples.
+/// Returns the strength of one of a light's `count` samples, and its slope; see light_init in plan/shading.c.
 static glint_dual strength_of(const glint_light_desc *desc, const glint_light_desc *slope, double count, bool is_cap)
 {
     if (!desc->has_radiance)
@@ -179,7 +180,7 @@ static glint_dual strength_of(const glint_light_desc *desc, const glint_light_de
     return dual_scale(radiance, (desc->kind == GLINT_LIGHT_SPHERE ? PI : glint_light_sample_area(desc)) / count);
 }
 
-/// `rows`: the first row of this light in the plan; NULL: it has none.
+/// Fills a light. rows: the light's first row in the plan; NULL: it has none.
 static void fill_light(glint_derivative_light *out, const glint_plan_light *rows, uint32_t count,
                        const glint_light_desc *desc, const glint_light_desc *slope)
 {

@@ -23,7 +23,7 @@ typedef struct glint_plan_derivative {
     char name[GLINT_DERIVATIVE_NAME_SIZE];
     glint_derivative_programs *programs; ///< one for each material of the plan
     glint_derivative_material *materials; ///< one for each material of the plan
-    glint_derivative_bounce *bounces; ///< likewise
+    glint_derivative_bounce *bounces; ///< one for each material of the plan
     glint_derivative_light *lights; ///< in the scene's order
     glint_derivative_part *parts; ///< one for each part of the geometry
     glint_derivative_view view;

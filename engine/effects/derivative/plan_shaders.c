@@ -34,7 +34,7 @@ static uint32_t find_inputs(const glint_plan *plan, const glint_plan_derivative 
     return inputs | (d->materials[material].varies ? REFLECTANCES : 0);
 }
 
-/// name: the derivative that an error message names.
+/// Makes the gradient of a shader by `inputs`. name: the derivative that an error message names.
 static glint_status find_gradient(glint_plan *plan, const glint_program *shader, uint32_t inputs, const char *name,
                                   glint_gradient *out, glint_error *error)
 {

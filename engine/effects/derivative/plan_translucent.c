@@ -1,5 +1,5 @@
-/// Derivatives of translucent materials. A frame reads their reflectances k times their opacity o: (o k)' = o k' + o'
-/// k.
+/// Derivatives of translucent materials. A frame reads their reflectances k times their opacity o:
+/// (o k)' = o k' + o' k.
 #include "engine/base/status.h"
 #include "engine/effects/derivative/slopes.h"
 

@@ -1,4 +1,4 @@
-/// Shared by the files of this folder. Internal to engine/tile.
+/// Shared by the files of this folder. Internal.
 #ifndef GLINT_DERIVATIVE_WORK_H
 #define GLINT_DERIVATIVE_WORK_H
 
@@ -75,8 +75,8 @@ static inline unsigned glint_lanes_equal(const uint32_t of[GLINT_GROUP], unsigne
     return same;
 }
 
-/// derivative.c: fills `out` with pointers to the samples of group g, after glint_tile_derive; their slopes are 0. In
-/// place, because copying so many pointers just written would stall.
+/// derivative.c: fills `out` with pointers to the samples of group g, after glint_tile_derive; their slopes are 0.
+/// It fills `out` in place, because copying so many pointers just written would stall.
 void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out);
 
 /// Computes the sample of a sphere light for each lane of a group, within the cone in which the lane sees the sphere.
@@ -130,7 +130,7 @@ void glint_bend_aim(const glint_tile *tile, const glint_plan *plan);
 
 /// Computes the barycentric weights of the point `at`, relative to the first corner of a triangle, less the 1 that
 /// the first weight has at the corner. With the slope of a point for `at`, these are the slopes of its weights.
-/// scale: that of the table.
+/// scale: the scale of the geometry's table.
 void glint_bend_shares(double scale, const glint_prim *prim, const double at[3], double out[3]);
 
 /// Allocates the other memory of the plan's derivatives; false: out of memory.

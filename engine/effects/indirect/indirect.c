@@ -23,7 +23,6 @@
 #include <string.h>
 
 #define GOLDEN 0x1.9e3779b97f4a8p-1 ///< golden ratio: fractional parts of its multiples fill 0 .. 1 evenly
-    ///< on
 
 typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTED, EVENT_STRAIGHT, EVENT_COUNT } event;
 
@@ -360,7 +359,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->plan.light_count = frame->plan->indirect.light_count;
     indirect->plan.runs[GLINT_STAGE_VISIBLE_LIGHT] = false;
     indirect->plan.visible_light_count = 0;
-    if (frame->plan->indirect.is_sky) // whatever the background is
+    if (frame->plan->indirect.is_sky) // the sky counts as open whatever the background is
         indirect->plan.environment = NULL;
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;

@@ -67,7 +67,7 @@ static void add_row(void *context, size_t index, int worker)
     }
 }
 
-/// If all terms are among the passes, beauty is their sum, as in a frame of one instant.
+/// Sums the terms into beauty, as in a frame of one instant. All terms must be among the passes.
 static void sum_terms(const exposure *e, size_t row)
 {
     float *const *beauty = e->image->plane[GLINT_PASS_BEAUTY];

@@ -52,7 +52,7 @@ static struct glint_vertex *own_of(const glint_tile *tile) { return tile->own[GL
 
 typedef struct shading_point {
     double point[3], normal[3]; ///< the normal of the front side
-    double slack; ///< as in the stage surface, in units of a rounding
+    double slack; ///< slack of the stage surface, divided by the relative rounding error
     uint32_t prim; ///< index of the triangle among the arranged primitives
 } shading_point;
 
