@@ -143,7 +143,7 @@ struct glint_plan {
     glint_shade_material *materials; ///< one per material, in the order of the geometry
     uint32_t material_count;
     glint_plan_patterns *patterns; ///< the programs of materials; NULL: there are none
-    bool highlights; ///< whether some material and some light make a highlight, of the two kinds that follow
+    bool highlights; ///< whether some material and some light make a highlight of one of the two kinds below
     bool powers, facets; ///< whether there are highlights of Phong and Blinn-Phong; of microfacets
     glint_plan_light *lights;
     glint_light_sample *light_samples; ///< samples of all area lights
@@ -156,8 +156,8 @@ struct glint_plan {
         bool on;
         uint32_t material; ///< the innermost medium
         double absorption[3];
-    } veil; ///< the eye is inside an absorbing medium
-    glint_plan_visible_light *visible_lights; ///< set if the eye is inside an absorbing medium
+    } veil; ///< the medium that contains the eye; `on`: it absorbs light
+    glint_plan_visible_light *visible_lights; ///< the surfaces of the visible lights
     glint_plan_edge *visible_light_edges; ///< edges of all visible lights
     uint32_t visible_light_count;
     size_t visible_light_edge_count;
@@ -245,7 +245,7 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 
 /// The passes of the ray through the pixel's centre.
 #define GLINT_CENTRE_PASSES (GLINT_OUTLINE_READS | 1u << GLINT_PASS_ALBEDO | 1u << GLINT_PASS_OUTLINE)
-/// The passes that are means of the samples.
+/// The passes that take the mean of all samples of a pixel: beauty, the terms of its light, and alpha.
 #define GLINT_LIGHT_PASSES (((1u << (GLINT_PASS_TRANSMISSION + 1)) - 1) | 1u << GLINT_PASS_ALPHA)
 
 /// Returns whether a frame's plan and the plans of its times differ only in their lights, and whether the frame can
@@ -253,7 +253,7 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count);
 /// Replaces a plan's lights by the lights of all times, each weighted by its share. Call after shading.
 glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error);
-void glint_plan_free_times(glint_plan **times, size_t count); ///< and the list; NULL: nothing
+void glint_plan_free_times(glint_plan **times, size_t count); ///< frees the plans and the list; NULL: nothing
 
 /// Returns the tone curve of the pixel values that adaptive sampling compares. The base has pixel values only if
 /// necessary; otherwise the comparison estimates them.

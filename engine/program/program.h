@@ -28,7 +28,7 @@ glint_key glint_texture_key(const glint_texture *texture);
 /// Makes a program of the derivatives of the first output of `program` by each of the inputs, in their order. The
 /// derivatives are exact, except that floor and similar operations have slope 0 everywhere, and so has a texel by its
 /// footprint.
-/// count  1 .. GLINT_PROGRAM_OUTPUTS_MAX. GLINT_ERR_INVALID as glint_builder_finish.
+/// count  1 .. GLINT_PROGRAM_OUTPUTS_MAX. Fails with GLINT_ERR_INVALID like glint_builder_finish.
 glint_status glint_program_slope(const glint_program *program, const glint_input *inputs, size_t count,
                                  glint_program **out, glint_error *error);
 

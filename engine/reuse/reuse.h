@@ -51,9 +51,8 @@ typedef struct glint_cached_tile {
     float *facing; ///< a separate block
     glint_key pattern;
     float *planes; ///< a separate block: the plan's planes of each sample, one sample after another
-    glint_key split; ///< key of the results of the programs' first parts:
-    void *values; ///< a separate block: glint_splits_bytes for each sample; holds the results of the programs' first
-        ///< parts
+    glint_key split; ///< key of the results of the programs' first parts, in `values`
+    void *values; ///< a separate block: glint_splits_bytes for each sample
     size_t value_bytes;
     glint_cached_light *lights;
     // what is known about the tile's pixels:

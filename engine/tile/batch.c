@@ -175,7 +175,7 @@ static void pack_lanes(glint_batch *batch, glint_precision precision)
 /// most groups show only one.
 static void pack(glint_batch *batch, const glint_tile_frame *frame)
 {
-    const uint32_t last = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS - 1 : 0; // kind
+    const uint32_t last = frame->geometry.prim_count <= SORTED_PRIMS ? SORTED_PRIMS - 1 : 0; // 0: unsorted
     uint32_t first[SORTED_PRIMS + 1] = { 0 }, next[GLINT_GROUP], count = 0;
     uint16_t from[GLINT_TILE_SAMPLES];
     for (uint32_t g = 0; g < batch->rays->group_count; g++)

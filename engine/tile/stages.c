@@ -16,7 +16,7 @@ uint64_t glint_tile_now_ns(void)
     return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
-/// Adds the time since the last call to a stage, when stages are timed.
+/// Adds the time since the end of the last timed stage to a stage's time, when stages are timed.
 static void lap(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage)
 {
     if (!frame->time_stages)

@@ -15,7 +15,7 @@
 /// Invalid reflectances computed by patterns.
 typedef struct glint_odd_pattern {
     uint64_t count;
-    uint32_t material; ///< for the result at the smallest point, by x, then y, then z; likewise the following fields
+    uint32_t material; ///< `material` and the next fields: of the result at the smallest point, by x, then y, then z
     int field;
     double point[3];
 } glint_odd_pattern;
@@ -180,7 +180,7 @@ typedef struct glint_tile {
         ///< primitives hit
     const void *viewed[3]; ///< for occlude: the rays that hit the points; NULL: the tile's rays
     void *own[GLINT_STAGE_COUNT]; ///< the memory of each stage; NULL until a frame needs it
-    struct glint_samples *samples; ///< memory of tile/shade.c; likewise
+    struct glint_samples *samples; ///< memory of tile/shade.c; NULL until a frame needs it
     uint32_t own_lights; ///< index of the current sample's first element in `lights`
     const struct glint_batch *batch; ///< the batch whose rays hit the samples; NULL: rays of the eye
     struct glint_raster_rest *raster_rest; ///< effects/raster/raster.c: hits of primitives other than triangles; NULL
@@ -232,8 +232,8 @@ typedef struct glint_sample_walk {
     bool shows; ///< this walk's geometry is stored in the picture when normals are known
     bool any; ///< something is hit
     bool shines; ///< some hit is shaded per sample
-    uint32_t from, count; ///< the current chunk of the plan's light rows; at GLINT_AT_LIGHT: the rows in `count` slots
-        ///< number of rows from `slot` on, in the chunk that starts at row `from`
+    uint32_t from, count; ///< the current chunk of the plan's light rows: its first row and its number of rows; at
+        ///< GLINT_AT_LIGHT, `count` is the number of rows from `slot` on, in that chunk
     uint32_t slot;
 } glint_sample_walk;
 
@@ -278,12 +278,12 @@ void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, ui
                              bool *light_known, bool *occlude_known);
 /// Sets the keys of the cached arrays. Called after the last sample, because the keys cover all samples.
 void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame);
-/// Record a sample's materials, and whether it shows background; background if nothing is hit; whether a light
-/// reaches any point of a sample, and its largest possible highlight.
+/// Record for sample k: its materials, and whether it shows background; that it shows only background; whether a
+/// light reaches any of its points, and the largest possible highlight there.
 void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 void glint_tile_note_nothing(const glint_tile *tile, uint32_t k);
 void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k);
-/// Adds the points of the current sample to the cached box; NULL: it has none.
+/// Adds `box`, which contains the current sample's points, to the cached box; NULL: there are no points.
 void glint_tile_cache_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
 /// Returns whether the tile's pixels equal those of the last picture. They are then copied, unless this picture's
 /// memory has them already.
@@ -318,8 +318,8 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
 /// Returns whether a spot light certainly misses all points of the tile, by the box around them.
 bool glint_tile_is_past_spot(const glint_tile *tile, const glint_plan_light *light);
 
-/// Compute one light, samples of one, or similar lights: light `first + slot[i]` of the plan, for each of `count`
-/// slots of the chunk.
+/// Call the stage light or occlude for one light, samples of one, or similar lights: light `first + slot[i]` of the
+/// plan, for each of `count` slots of the chunk.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count);
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -342,8 +342,8 @@ void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film
                            float *beauty[3]);
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
-/// tile/shade.c: for plans whose samples are shaded together. Stores what shading needs of the current sample, and
-/// after the last shades and resolves all.
+/// tile/shade.c: for plans whose samples are shaded together. Store what shading needs of the current sample;
+/// shade and resolve all samples after the last one.
 struct glint_samples *glint_samples_create(void);
 void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
@@ -361,8 +361,8 @@ uint64_t glint_tile_now_ns(void);
 /// Finds the material of each hit, if the surfaces were not computed.
 void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/work.c: when work is counted, adds the work of the last call of a stage.
-/// Every hit evaluates one light, or `count` samples of it.
+/// tile/work.c: when work is counted, adds the work of evaluating one light, or `count` samples
+/// of it, at every hit.
 void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count);
 /// Returns the counter for kernels' decisions; NULL: they are not counted.
 static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_frame *frame)
@@ -371,8 +371,7 @@ static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_f
 }
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
-/// effects/bounce/bounce.c:
-/// Returns whether any visible material needs secondary rays. The materials must be known.
+/// effects/bounce/bounce.c: returns whether any visible material needs secondary rays. The materials must be known.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/visible_light/visible_light.c: visible lights.
@@ -567,7 +566,7 @@ void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, doubl
 struct glint_raster_rest *glint_raster_rest_create(void);
 void glint_raster_rest_destroy(struct glint_raster_rest *rest);
 bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
-/// `args`: as for casting all primitives.
+/// Finds the first hits by scan conversion. args: as for casting all primitives.
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
 /// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters. At the first
