@@ -121,7 +121,8 @@ INNER void R(aim)(const glint_light_args *args, const int kind, uint32_t s, cons
 {
     const double *position = kind == LIGHT_PLAIN && args->positions[0] ? args->positions[s] : args->position;
     const bool directional = kind <= LIGHT_SPOT && args->directional;
-    const vr scale = r_set(args->scale);
+    const real scale = (real)args->scale;
+    const bool between = kind != LIGHT_CONE && !directional;
     for (int j = 0; j < LIT_PARTS; j++)
         for (int k = 0; k < 3; k++) {
             if (kind == LIGHT_CONE)
@@ -131,9 +132,12 @@ INNER void R(aim)(const glint_light_args *args, const int kind, uint32_t s, cons
             else
                 l[j][k] = r_set(position[k]);
         }
-    for (int j = 0; kind != LIGHT_CONE && !directional && j < LIT_PARTS; j++)
+    for (int j = 0; between && j < LIT_PARTS; j++)
         for (int k = 0; k < 3; k++)
-            l[j][k] = (l[j][k] - p->point[j][k]) * scale;
+            l[j][k] = l[j][k] - p->point[j][k];
+    for (int j = 0; between && scale != 1 && j < LIT_PARTS; j++) // only very large or small scenes are scaled
+        for (int k = 0; k < 3; k++)
+            l[j][k] = l[j][k] * r_set(scale);
 }
 
 /// Returns the attenuation, 1 / (c0 + (c1 d + c2 d^2)), with the factors of area lights. m: as computed by in_front.

@@ -23,8 +23,8 @@ typedef struct R(lit_call) {
 
 /// Stores points, and computes the normals and dot products in `p`. n: outward normals. Returns the lanes that are seen
 /// from behind.
-INNER unsigned R(put_part)(R(lit_call) * call, const bool mixed, const bool normals, const vr n[3], size_t at, int j,
-                           R(lit_points) * p)
+INNER unsigned R(put_part)(R(lit_call) * call, const bool mixed, const bool normals, const bool glossy, const vr n[3],
+                           size_t at, int j, R(lit_points) * p)
 {
     const glint_surface_args *surface = call->surface;
     const vr away = DOT(n, p->direction[j]);
@@ -39,14 +39,17 @@ INNER unsigned R(put_part)(R(lit_call) * call, const bool mixed, const bool norm
         R(enclose)(&call->box, p->point[j], true, rm_from_bits(0));
     if (mixed && surface->slack)
         r_store((real *)surface->slack + at, r_set(-GLINT_POINT_SLACK) * R(largest)(p->point[j]));
-    p->a[j] = DOT(p->direction[j], p->direction[j]);
-    p->nv[j] = r_select(back, away, -away);
+    if (glossy) {
+        p->a[j] = DOT(p->direction[j], p->direction[j]);
+        p->nv[j] = r_select(back, away, -away);
+    }
     return rm_bits(back);
 }
 
-/// Processes a group that shows one solid, one plane, or one sphere near the eye. Constants: mixed, normals, kind.
-INNER void R(light_whole)(R(lit_call) * call, R(seen_slot) * slot, const bool mixed, const bool normals,
-                          const glint_prim_kind kind, R(group_cursor) cursor)
+/// Processes a group that shows one solid, one plane, or one sphere near the eye. Constants: mixed, normals, kind;
+/// glossy: the material has highlights.
+INNER void R(light_vectors)(R(lit_call) * call, R(seen_slot) * slot, const bool mixed, const bool normals,
+                            const glint_prim_kind kind, const bool glossy, R(group_cursor) cursor)
 {
     const glint_light_args *light = call->light;
     const size_t at = (size_t)cursor.g * GLINT_GROUP;
@@ -58,9 +61,9 @@ INNER void R(light_whole)(R(lit_call) * call, R(seen_slot) * slot, const bool mi
         for (int j = 0; j < LIT_PARTS; j++) {
             vr n[3];
             R(find_whole)(call->surface, slot, kind, directions, at, i + j * VR, p.direction[j], n, p.point[j]);
-            back |= R(put_part)(call, mixed, normals, n, at + (size_t)(i + j * VR), j, &p) << (i + j * VR);
+            back |= R(put_part)(call, mixed, normals, glossy, n, at + (size_t)(i + j * VR), j, &p) << (i + j * VR);
         }
-        const R(lit_lanes) lanes = R(light_lanes)(light, LIGHT_PLAIN, true, 0, NULL, &call->gloss, &p, i, LIT_LANES);
+        const R(lit_lanes) lanes = R(light_lanes)(light, LIGHT_PLAIN, glossy, 0, NULL, &call->gloss, &p, i, LIT_LANES);
         if (!lanes.lit)
             continue;
         R(store_lit)(light, 0, at + (size_t)i, &lanes);
@@ -71,6 +74,16 @@ INNER void R(light_whole)(R(lit_call) * call, R(seen_slot) * slot, const bool mi
     call->surface->back[cursor.g] = (uint16_t)back;
     call->surface->dark[cursor.g] = 0;
     call->walk.any_back = call->walk.any_back || back;
+}
+
+/// Does the same for a material with or without highlights.
+INNER void R(light_whole)(R(lit_call) * call, R(seen_slot) * slot, const bool mixed, const bool normals,
+                          const glint_prim_kind kind, R(group_cursor) cursor)
+{
+    if (call->gloss.phong | call->gloss.blinn)
+        R(light_vectors)(call, slot, mixed, normals, kind, true, cursor);
+    else
+        R(light_vectors)(call, slot, mixed, normals, kind, false, cursor);
 }
 
 /// Processes a group that shows one sphere, plane or solid in every lane, from a side that is not dark: the common

@@ -125,12 +125,28 @@ static inline void begin_lanes(const glint_shade_args *args, light_colors *color
     m->factors.shiny = 0;
 }
 
+/// Stores the factors of the only light, for a material without highlights: the common case of add_factors.
+INNER void put_only_factors(const glint_shade_light *light, const glint_shade_material *material, size_t at,
+                            light_factors *factors)
+{
+    if (!light->lit[at / GLINT_GROUP])
+        return;
+    factors->count = 1;
+    factors->light[0] = light;
+    factors->number[0] = 0;
+    put_factors(light, material, NULL, false, at, false, factors->factor[SHARE_DIFFUSE][0], NULL);
+}
+
 /// Computes the factors and the colours. No light is read for materials of GLINT_PLANE_SHADED.
 static inline void find_lights(material_lanes *m)
 {
+    const glint_shade_args *args = m->args;
     if (m->painted && m->material->planes & GLINT_PLANE_SHADED)
         return;
-    add_factors(m->args, m->material, m->specular, m->at, &m->factors);
+    if (!m->specular && args->light_count == 1 && !args->lights->summed)
+        put_only_factors(args->lights, m->material, m->at, &m->factors);
+    else
+        add_factors(args, m->material, m->specular, m->at, &m->factors);
     color_lights(m->args, m->material, m->specular, m->colors);
 }
 
