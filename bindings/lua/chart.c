@@ -1,4 +1,4 @@
-// The series of glint.chart: tables with label, x, y, color, width and dots.
+// The series of glint.chart: tables with label, x, y, color, width and dots; charts as pictures of their own.
 #include "bindings/lua/chart.h"
 
 #include <stddef.h>
@@ -12,6 +12,7 @@ typedef struct series {
     double color[3], width;
 } series;
 
+// Copies the text at `index`.
 static void read_label(lua_State *L, int index, const char *path, void *out)
 {
     size_t length;
@@ -132,7 +133,21 @@ static glint_chart **keep(lua_State *L, int index)
     return chart;
 }
 
-void glintL_chart_read(lua_State *L, int index, const char *path, void *desc)
+// Takes the label of series number `i`, which has none, from the labels of the constructor's table.
+static void read_own_label(lua_State *L, size_t i, series *out)
+{
+    char path[32];
+    if (out->label[0] || !lua_istable(L, 1))
+        return;
+    lua_pushliteral(L, "labels");
+    if (lua_rawget(L, 1) == LUA_TTABLE && lua_rawgeti(L, -1, (lua_Integer)i + 1) != LUA_TNIL) {
+        snprintf(path, sizeof path, "chart.labels[%zu]", i + 1);
+        read_label(L, lua_gettop(L), path, out);
+    }
+}
+
+// Reads the list of series at `index`. The chart lives as long as the table at `owner`.
+static void read_series(lua_State *L, int index, int owner, const char *path, void *desc)
 {
     glint_error error;
     glint_curve curves[GLINT_CURVES_MAX];
@@ -150,7 +165,10 @@ void glintL_chart_read(lua_State *L, int index, const char *path, void *desc)
         read[i] = (series) { .label = "" };
         lua_rawgeti(L, index, (lua_Integer)i + 1);
         glintL_read_table(L, -1, full, FIELDS, &read[i], false);
-        push_points(L, lua_gettop(L), full, &curves[i]);
+        const int row = lua_gettop(L);
+        read_own_label(L, i, &read[i]);
+        lua_settop(L, row);
+        push_points(L, row, full, &curves[i]);
         lua_remove(L, -2); // leaves the buffer
         curves[i].label = read[i].label;
         curves[i].has_color = read[i].has_color;
@@ -159,10 +177,27 @@ void glintL_chart_read(lua_State *L, int index, const char *path, void *desc)
         curves[i].width = read[i].width;
         curves[i].has_dots = read[i].has_dots;
     }
-    glint_chart **chart = keep(L, index);
+    glint_chart **chart = keep(L, owner);
     glintL_check_status(L, "chart", &error, glint_chart_create(curves, count, chart, &error));
     ((glint_overlay_desc *)desc)->chart = *chart;
     lua_settop(L, top);
+}
+
+void glintL_chart_read(lua_State *L, int index, const char *path, void *desc) { read_series(L, index, index, path, desc); }
+
+void glintL_chart_read_y(lua_State *L, int index, const char *path, void *desc)
+{
+    if (!lua_istable(L, 1))
+        glintL_error(L, "%s: only glint.chart { ... } takes y; assign series", path);
+    if (((glint_overlay_desc *)desc)->chart)
+        glintL_error(L, "chart: series or y expected, got both");
+    lua_createtable(L, 1, 0);
+    lua_createtable(L, 0, 1);
+    lua_pushvalue(L, index);
+    lua_setfield(L, -2, "y");
+    lua_rawseti(L, -2, 1);
+    read_series(L, lua_gettop(L), 1, "chart.series", desc);
+    lua_pop(L, 1);
 }
 
 static void push_numbers(lua_State *L, const double *of, size_t count, const char *name)
@@ -205,4 +240,99 @@ void glintL_chart_push(lua_State *L, const void *desc)
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     glintL_freeze(L, "series");
+}
+
+// ---- A chart as a picture ----
+
+bool glintL_push_chart_scene(lua_State *L, int index)
+{
+    const glint_overlay *chart = glintL_test_object(L, index, GLINTL_OVERLAY);
+    if (!chart || glint_overlay_get(chart)->kind != GLINT_OVERLAY_CHART)
+        return false;
+    luaL_checkstack(L, 6, "chart");
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_getfield(L, -1, "glint");
+    lua_getfield(L, -1, "scene");
+    lua_createtable(L, 1, 1);
+    lua_pushvalue(L, index);
+    lua_rawseti(L, -2, 1);
+    lua_pushinteger(L, 1);
+    lua_setfield(L, -2, "background");
+    lua_call(L, 1, 1);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+    return true;
+}
+
+typedef struct save_options {
+    double width, height, dpi;
+} save_options;
+
+// Renders a scene without lights on one thread.
+static glint_status draw(glint_scene *scene, const save_options *options, glint_image **out, glint_error *error)
+{
+    glint_render_desc desc = glint_render_desc_default();
+    glint_renderer_desc on = glint_renderer_desc_default();
+    glint_renderer *renderer = NULL;
+    glint_plan *plan = NULL;
+    desc.width = options->width;
+    desc.height = options->height;
+    on.threads = 1;
+    glint_status status = glint_plan_create(scene, &desc, &plan, error);
+    if (!status)
+        status = glint_renderer_create(&on, &renderer, error);
+    if (!status)
+        status = glint_render(renderer, plan, out, NULL, error);
+    glint_renderer_destroy(renderer);
+    glint_plan_destroy(plan);
+    return status;
+}
+
+// Gives the scene at the top of the stack a camera.
+static void add_camera(lua_State *L)
+{
+    glint_error error;
+    const glint_camera_desc desc = glint_camera_desc_default();
+    glintL_box *box = glintL_new_box(L, GLINTL_CAMERA);
+    glint_camera *camera;
+    glintL_check_status(L, "save", &error, glint_camera_create(&desc, &camera, &error));
+    box->object = camera;
+    lua_setfield(L, -2, "camera");
+}
+
+// Writes a chart: save(path, { width, height, dpi }). This is not a frame of the run.
+static int save(lua_State *L)
+{
+    static const glintL_field fields[] = {
+        { .name = "width", .type = GLINT_TYPE_NUMBER, .offset = offsetof(save_options, width) },
+        { .name = "height", .type = GLINT_TYPE_NUMBER, .offset = offsetof(save_options, height) },
+        { .name = "dpi", .type = GLINT_TYPE_NUMBER, .offset = offsetof(save_options, dpi) },
+        { .name = NULL },
+    };
+    glint_error error;
+    glint_image *image;
+    save_options read = { 640, 400, 0 };
+    lua_settop(L, 3);
+    if (!lua_isnil(L, 3))
+        glintL_read_table(L, 3, "save", fields, &read, false);
+    if (!glintL_push_chart_scene(L, 1))
+        return luaL_typeerror(L, 1, "chart");
+    add_camera(L);
+    glintL_box *box = glintL_new_box(L, GLINTL_IMAGE);
+    glintL_check_status(L, "save", &error, draw(glintL_check_object(L, 4, GLINTL_SCENE), &read, &image, &error));
+    box->object = image;
+    lua_getfield(L, 5, "save");
+    lua_insert(L, 5);
+    lua_pushvalue(L, 2);
+    lua_createtable(L, 0, 1);
+    lua_pushnumber(L, read.dpi);
+    lua_setfield(L, -2, "dpi");
+    lua_call(L, 3, LUA_MULTRET);
+    return lua_gettop(L) - 4;
+}
+
+int glintL_chart_push_save(lua_State *L)
+{
+    lua_pushcfunction(L, save);
+    return 1;
 }

@@ -501,6 +501,16 @@ static void read_x(lua_State *L, int index, const char *path, void *desc)
         glintL_error(L, "%s: only glint.chart { ... } takes x; assign series with their own x", path);
 }
 
+// The labels of a chart are read with the series.
+static void read_labels(lua_State *L, int index, const char *path, void *desc)
+{
+    (void)desc;
+    if (!lua_istable(L, 1))
+        glintL_error(L, "%s: only glint.chart { ... } takes labels; assign series with their own label", path);
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "list of texts, one for each series");
+}
+
 static void push_nil(lua_State *L, const void *desc)
 {
     (void)desc;
@@ -536,8 +546,10 @@ static void read_extent(lua_State *L, int index, const char *path, void *desc)
 static void push_extent(lua_State *L, const void *desc) { push_pair(L, ((const desc_type *)desc)->extent, "extent"); }
 
 static const glintL_field CHART_FIELDS[] = {
-    { .name = "series", GLINTL_CUSTOM(glintL_chart_read, glintL_chart_push), .required = true },
+    { .name = "series", GLINTL_CUSTOM(glintL_chart_read, glintL_chart_push) },
     { .name = "x", GLINTL_CUSTOM(read_x, push_nil) },
+    { .name = "y", GLINTL_CUSTOM(glintL_chart_read_y, push_nil) },
+    { .name = "labels", GLINTL_CUSTOM(read_labels, push_nil) },
     { .name = "title", GLINTL_CUSTOM(read_text, push_text) },
     { .name = "x_label", GLINTL_CUSTOM(read_title_x, push_title_x) },
     { .name = "y_label", GLINTL_CUSTOM(read_title_y, push_title_y) },
@@ -606,6 +618,8 @@ static const glintL_field FRUSTUM_FIELDS[] = {
     { .name = NULL },
 };
 
+static const luaL_Reg CHART_METHODS[] = { { "save", glintL_chart_push_save }, { NULL, NULL } };
+
 static const glintL_variant VARIANTS[] = {
     [GLINT_OVERLAY_LABEL] = { .name = "label", .fields = LABEL_FIELDS },
     [GLINT_OVERLAY_COLORBAR] = { .name = "colorbar", .fields = COLORBAR_FIELDS },
@@ -617,7 +631,7 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_OVERLAY_LOBE] = { .name = "lobe", .fields = LOBE_FIELDS, .getters = COMPUTED },
     [GLINT_OVERLAY_PATH] = { .name = "path", .fields = PATH_FIELDS, .getters = COMPUTED },
     [GLINT_OVERLAY_FRUSTUM] = { .name = "frustum", .fields = FRUSTUM_FIELDS, .getters = COMPUTED },
-    [GLINT_OVERLAY_CHART] = { .name = "chart", .fields = CHART_FIELDS },
+    [GLINT_OVERLAY_CHART] = { .name = "chart", .fields = CHART_FIELDS, .getters = CHART_METHODS },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_overlay_get(object)->kind]; }
@@ -642,6 +656,8 @@ static void begin(int kind, void *desc) { *(desc_type *)desc = glint_overlay_des
 static void given(lua_State *L, const glintL_variant *of, const void *desc)
 {
     const desc_type *d = desc;
+    if (d->kind == GLINT_OVERLAY_CHART && !d->chart)
+        glintL_error(L, "chart.series: list of series expected, got nil; a chart with one curve may have y instead");
     lua_pushliteral(L, "at");
     if (lua_rawget(L, 1) != LUA_TNIL && d->has_position)
         glintL_error(L, "%s: at or position expected, got both", of->name);

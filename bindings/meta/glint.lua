@@ -461,8 +461,10 @@ function glint.colorbar(fields) end
 ---@field dots? boolean  a dot at each point. Default false
 
 ---@class glint.chart_fields: glint.overlay_fields
----@field series glint.series[]  1 .. 16 curves; reads as a copy
+---@field series? glint.series[]  1 .. 16 curves; reads as a copy
+---@field y? number[]|fun(x: number): number  a single curve, instead of `series`; only in glint.chart { ... }
 ---@field x? number[]  the x of all series that have none of their own; only in glint.chart { ... }
+---@field labels? string[]  the labels of the series that have none of their own; only in glint.chart { ... }
 ---@field title? string  text above the curves, as in a label. Default ""
 ---@field x_label? string  name of the horizontal axis, at most 127 bytes. Default ""
 ---@field y_label? string  name of the vertical axis. Default ""
@@ -476,6 +478,7 @@ function glint.colorbar(fields) end
 --- 0.02, `background` 1 and `at` "center": a chart on white paper. A script may
 --- return a chart; a scene with a chart and no shapes needs no camera.
 ---@class glint.chart: glint.chart_fields, glint.object
+---@field save fun(self: glint.chart, path: string, options?: { width?: integer, height?: integer, dpi?: number }): boolean?, string?  writes the chart as a picture, as image:save does, 640 x 400 pixels by default
 
 ---@param fields glint.chart_fields
 ---@return glint.chart

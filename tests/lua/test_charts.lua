@@ -105,5 +105,33 @@ function tests.without_a_camera()
   raises("camera: the scene has none", function() glint.scene { glint.label { text = "a" } }:render {} end)
 end
 
+function tests.one_curve()
+  local x, y = { 1, 2, 3 }, { 4, 9, 1 }
+  local whole = glint.chart { series = { { x = x, y = y, label = "a" } } }
+  local short = glint.chart { x = x, y = y, labels = { "a" } }
+  collectgarbage()
+  check(bytes_of(short) == bytes_of(whole), "y is a single series, and labels name the series")
+  raises("chart: series or y expected, got both", glint.chart, { y = y, series = { { y = y } } })
+  raises("chart.series: list of series expected, got nil", glint.chart, { x = x })
+  raises("chart.series[1].y: as many numbers as in x expected: 2, got 3", glint.chart, { x = { 1, 2 }, y = y })
+  raises("chart.labels[1]: string expected, got 3", glint.chart, { y = y, labels = { 3 } })
+  raises("chart.labels: list of texts, one for each series expected, got a", glint.chart, { y = y, labels = "a" })
+  raises("only glint.chart { ... } takes y", function() whole.y = y end)
+end
+
+function tests.save()
+  local c, path = chart_of { y = { 1, 3, 2 } }, os.tmpname()
+  check(c:save(path .. ".png", { width = 160, height = 100 }), "saved")
+  local file = assert(io.open(path .. ".png", "rb"))
+  check(file:read "a" == bytes_of(c), "save writes what a scene with the chart renders")
+  file:close()
+  check(c:save(path .. ".svg") and io.open(path .. ".svg"):read "a":find "<svg", "an .svg")
+  check(select("#", c:save "/proc/none/a.png") == 2, "nil and a message where there is no folder")
+  raises("save.path: name ending in .png", c.save, c, "a.xyz")
+  raises("save.widht: no such field; did you mean 'width'?", c.save, c, "a.png", { widht = 1 })
+  raises("width: whole number", c.save, c, "a.png", { width = 0.5 })
+  for _, ending in ipairs { "", ".png", ".svg" } do os.remove(path .. ending) end
+end
+
 tally.run(tests)
 tally.finish()
