@@ -115,7 +115,7 @@ function tests.one_curve()
   raises("chart.series: list of series expected, got nil", glint.chart, { x = x })
   raises("chart.series[1].y: as many numbers as in x expected: 2, got 3", glint.chart, { x = { 1, 2 }, y = y })
   raises("chart.labels[1]: string expected, got 3", glint.chart, { y = y, labels = { 3 } })
-  raises("chart.labels: list of texts, one for each series expected, got a", glint.chart, { y = y, labels = "a" })
+  raises("chart.labels: list of texts, one for each series expected, got string \"a\"", glint.chart, { y = y, labels = "a" })
   raises("only glint.chart { ... } takes y", function() whole.y = y end)
 end
 
