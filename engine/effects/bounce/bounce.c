@@ -234,7 +234,7 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
         glint_derive_split(batch, tile, frame, i, rays.slopes);
     if (!(depth < plan->desc.max_depth)) // only the straight ray is left
         memset(rays.weight, 0, GLINT_BRANCH_STRAIGHT * sizeof *rays.weight);
-    if (!first && glint_has_lane(batch->total, i)) // both have the same direction
+    if (!first && glint_has_lane(batch->total, i)) // the mirrored and the totally reflected ray have the same direction
         take_weight(plan, &rays, GLINT_BRANCH_MIRRORED, GLINT_BRANCH_REFRACTED);
     if (!first && surfaces > GLINT_BOUNCE_SPLITS)
         draw(plan, &rays, lot_of(batch, plan->desc.precision, i, surfaces));
@@ -366,7 +366,7 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
     glint_batch_end(&bounce->batch, tile);
 }
 
-/// The key of mirror, transmission, opacity, depth and media.
+/// Continues a key with max_depth, and with the mirror, transmission and refractive index of every material.
 static glint_key own_key(const glint_plan *plan, glint_key key)
 {
     GLINT_KEY_ADD(key, plan->desc.max_depth);
@@ -386,7 +386,7 @@ static bool called(const glint_plan *plan)
            (plan->clears || ((plan->mirrors || plan->transmits) && plan->desc.max_depth > 0));
 }
 
-/// The key of mirror, transmission and opacity.
+/// Adds the light along the rays that surfaces send on.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (!walk->any || tile->direct || !glint_tile_sends_on(tile, frame))

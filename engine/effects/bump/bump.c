@@ -196,7 +196,7 @@ static void perturb_normals(glint_tile *tile, const glint_tile_frame *frame, gli
     glint_tile_bump(tile, frame);
 }
 
-/// Part of the stages surface and light.
+/// Runs as a part of the stages surface and light.
 const glint_stage glint_stage_bump = {
     .called = glint_plan_bumps,
     .step[GLINT_AT_SURFACE] = perturb_normals,

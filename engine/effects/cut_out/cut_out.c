@@ -442,7 +442,7 @@ static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const gl
             return;
 }
 
-/// A part of cast and occlude.
+/// Runs as a part of the stages cast and occlude.
 const glint_stage glint_stage_cut_out = {
     .called = glint_plan_cuts,
     .step[GLINT_AT_CAST] = see_through,

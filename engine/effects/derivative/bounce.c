@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-// ---- Continued rays
-// -----------------------------------------------------------------------------------------------------
+// ---- Continued rays -----------------------------------------------------------------------------------------------
 
 /// A ray at a surface, with its slopes for one derivative.
 typedef struct turning {

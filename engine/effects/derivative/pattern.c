@@ -86,7 +86,7 @@ static void finish(const glint_tile *tile, const glint_plan *plan, size_t index,
 
 // ---- The programs -------------------------------------------------------------------------------------------------
 
-/// Runs a program of a field for entries whose inputs are gathered, into pattern->slopes from place `to` on.
+/// Runs a program of a field for entries whose inputs are gathered, into pattern->slopes from offset `to` on.
 static void run(const glint_tile *tile, const glint_tile_frame *frame, const glint_program *program,
                 glint_program_args args, uint32_t to)
 {

@@ -141,7 +141,7 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
                   glint_has_slope(out->ambient, 3) || glint_has_slope(&out->shininess, 1) || glint_has_slope(&out->alpha, 1);
 }
 
-/// Fields that are not read get no slope.
+/// Fills a material's glint_derivative_bounce. Fields that are not read get no slope.
 static void fill_bounce(glint_derivative_bounce *out, const glint_material_desc *desc, const glint_material_desc *slope)
 {
     const bool transmits = glint_material_transmits(desc);

@@ -42,7 +42,7 @@ static inline uint64_t glint_indirect_point_of(const struct glint_indirect *indi
     return indirect->lane[i] * each + number;
 }
 
-/// Returns the seed of that sequence. There are two for each step; `which` selects one. k: the index.
+/// Returns the seed of that sequence. There are two seeds for each step; `which` selects one. k: the index.
 static inline uint64_t glint_indirect_seed_of(const struct glint_indirect *indirect, uint32_t i, uint64_t k,
                                               uint32_t which)
 {

@@ -45,7 +45,7 @@ void glint_group_sums_destroy(struct glint_group_sums *sums)
     if (!sums)
         return;
     if (sums->batch)
-        sums->batch->points = NULL; // the tile's
+        sums->batch->points = NULL; // the tile's sums own them
     glint_group_sums_destroy(sums->batch);
     glint_group_sums_destroy(sums->points);
     free(sums->sum);
@@ -328,7 +328,7 @@ static void store(glint_tile *tile, const glint_tile_frame *frame, glint_sample_
 
 static bool called(const glint_plan *plan) { return plan->light_groups; }
 
-/// A part of all stages that add light.
+/// Runs as a part of all stages that add light.
 const glint_stage glint_stage_light_groups = {
     .called = called,
     .step[GLINT_AT_STORE_LIGHT] = store,

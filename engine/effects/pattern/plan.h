@@ -63,8 +63,8 @@ typedef struct glint_pattern_space {
     double lower[3], upper[3]; ///< box
     double origin[3], along[3],
         side[2][3]; ///< for surface coordinates: plane and disk: a point, and two tangents; cylinder and cone: the
-    ///< base, its axis divided by its squared length, and two unit vectors perpendicular to it; torus: likewise, with
-    ///< its centre and its unit axis
+    ///< base, its axis divided by its squared length, and two unit vectors perpendicular to it; torus: its
+    ///< centre, its unit axis, and two such vectors
     double shrink; ///< ratio of own lengths to world lengths
     double radius, length; ///< cylinder and cone; torus: radius of its tube, length of the circle in the middle of the
         ///< tube
@@ -79,7 +79,7 @@ typedef struct glint_plan_patterns {
     int plane[GLINT_FIELD_PLANES]; ///< the first plane of a field; -1: no material has it
     int planes[GLINT_FIELD_PLANES]; ///< number of planes: one per channel, or one if every material is grey
     uint32_t plane_count;
-    uint32_t row_count; ///< the largest number that a program needs
+    uint32_t row_count; ///< the largest number of rows that a program needs
     uint32_t reads; ///< inputs read by all materials
     uint32_t material_count;
     bool any; ///< some material has planes

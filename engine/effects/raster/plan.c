@@ -301,7 +301,7 @@ static picture make_screen(const glint_plan *plan, double scale)
 static glint_status enter_all(scanning *s, glint_pool *pool, glint_error *error)
 {
     glint_raster *raster = s->raster;
-    const size_t placed = place_entries(s), total = placed ? placed : 1; // an allocation, even if empty
+    const size_t placed = place_entries(s), total = placed ? placed : 1; // at least one, so that memory is allocated
     if (total > ENTRIES_MAX)
         return GLINT_OK;
     if (total > raster->entry_capacity) {

@@ -25,7 +25,7 @@ typedef struct exposure {
     glint_image *image;
     const glint_image *part; ///< the image of one time
     double *sums; ///< sums of all means
-    const float *beauty[3], *alpha; ///< the source of pixel values: planes of the image, or
+    const float *beauty[3], *alpha; ///< the source of pixel values: planes of the image, or `own`
     float *own; ///< owned: planes that the image does not have
     const glint_tone_table *table;
     uint64_t (*counts)[2]; ///< pixels too bright and not finite, of each row

@@ -608,7 +608,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     glint_tile_transparent_shadows(tile, frame, walk->from, walk->count);
 }
 
-/// A part of occlude and shade.
+/// Runs as a part of the stages occlude and shade.
 const glint_stage glint_stage_tint = {
     .called = called,
     .normals = true,
