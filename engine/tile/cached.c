@@ -6,7 +6,7 @@
 
 // ---- Its pixels ----
 
-/// Returns the pixels of the tile that have all samples; 0 if all have.
+/// Returns a hash of which pixels of the tile get all samples; 0 if all of them do.
 static uint64_t pixels_of(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_key none = { 0 };

@@ -320,7 +320,7 @@ static void prefetch_number(const void *plane, size_t at)
         glint_prefetch((const uint32_t *)plane + at, sizeof(uint32_t));
 }
 
-/// Four adjacent groups share cache lines of sixteen pixels: each group prefetches one of the four.
+/// Prefetches one cache line of sixteen pixels per plane: four adjacent groups share four such lines, one row each.
 void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     const glint_image *image = frame->image;

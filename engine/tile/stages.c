@@ -427,7 +427,7 @@ static const glint_light_grid *grid_of(const glint_tile_frame *frame, const glin
     return NULL;
 }
 
-/// Sets the arguments that depend on the light, or on the samples of one.
+/// Sets the arguments that depend on one light, or on samples of one light.
 static void aim_occlude(const glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                         glint_occlude_args *args)
 {
@@ -467,7 +467,7 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
     return args;
 }
 
-/// Finds the lanes that one light, or samples of one, reach. The arguments must be set for it.
+/// Finds the lanes that one light, or samples of one light, reach. aim_occlude must have set the arguments.
 static void occlude_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                           glint_occlude_args *args)
 {
