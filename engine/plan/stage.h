@@ -26,10 +26,10 @@ typedef enum glint_scene_part {
     GLINT_PART_CUT_OUTS, ///< programs of holes, and materials that are invisible
     GLINT_PART_BUMPS, ///< programs that turn normals
     GLINT_PART_HIGHLIGHTS, ///< kind of highlight of each material
-    GLINT_PART_LIGHT_POSITIONS, ///< kind, position, fall-off
+    GLINT_PART_LIGHT_POSITIONS, ///< kind, position and fall-off of each light
     GLINT_PART_SHADOWS, ///< lights that cast shadows
     GLINT_PART_LIGHT_COLORS,
-    GLINT_PART_MATERIALS, ///< reflectances, exponents
+    GLINT_PART_MATERIALS, ///< reflectances and exponents of materials
     GLINT_PART_BACKGROUND, ///< background: a colour or a program; brightness of visible lights
     GLINT_PART_TINTS, ///< transmission of materials, if transmission tints shadows
     GLINT_PART_PASSES,

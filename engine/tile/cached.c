@@ -42,7 +42,7 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
         plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
         return false;
     for (uint32_t i = 0; i < plan->light_count; i++)
-        if (plan->lights[i].light_samples) // one light sample per lane
+        if (plan->lights[i].light_samples) // which sample is taken depends on the lane
             return false;
     return true;
 }

@@ -45,7 +45,7 @@ uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
 /// Lists the lanes whose materials have programs that fill planes. Returns whether there are any. tile->material must
 /// be known.
 bool glint_tile_find_painted(glint_tile *tile, const glint_tile_frame *frame);
-/// Writes the listed lanes of each group.
+/// Writes the lanes listed by glint_tile_find_painted, one bit each, for every group.
 void glint_tile_painted_lanes(const glint_tile *tile, uint16_t painted[GLINT_TILE_GROUPS]);
 /// Points the planes of sample k to their slot in the cache. Returns whether the slot already has their values.
 bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);

@@ -43,7 +43,7 @@ typedef struct scanning {
 
 /// A corner relative to the eye.
 typedef struct seen_corner {
-    double p[3]; ///< from the eye, as used by the decision
+    double p[3]; ///< relative to the eye, rounded as in the decision of hits
     double z, s, t; ///< along the view and across it, not yet divided by z
     double size; ///< magnitude of p and of its terms, for the rounding error
 } seen_corner;
