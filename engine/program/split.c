@@ -292,7 +292,7 @@ static bool write_parts(values *v, const uint32_t *outputs, glint_split *split)
         v->slot[v->cached[k]] = (uint16_t)(GLINT_ROW_INPUT + k);
         split->truths |= cost_of_value(v, v->cached[k]) == COST_OF_TRUTH ? 1u << k : 0;
     }
-    memcpy(split->second.outputs, v->code->outputs, sizeof split->second.outputs); // write_part keeps outputs that are numbers
+    memcpy(split->second.outputs, v->code->outputs, sizeof split->second.outputs); // write_part keeps numbers
     return write_part(v, v->second, outputs, v->code->output_count, &split->second);
 }
 

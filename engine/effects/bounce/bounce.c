@@ -10,8 +10,8 @@
 /// weight of all: no light is lost, and work no longer doubles. The random number is a hash of the ray's own bits, so
 /// that it is always the same.
 ///
-/// max_depth does not count translucent surfaces that a ray goes straight through. They are counted as
-/// the passes of the ray, at most GLINT_PASSES_MAX.
+/// max_depth does not count translucent surfaces that a ray goes straight through. They are counted as the
+/// passes of the ray, at most GLINT_PASSES_MAX.
 ///
 /// A ray too weak to be seen is not followed. A sample loses at most GLINT_BOUNCE_LOSS of linear light in total, by
 /// the plan's bound of the light along any ray. That is 1/318 of the smallest step between two 8-bit sRGB values.

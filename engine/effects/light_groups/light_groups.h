@@ -14,8 +14,7 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan);
 void glint_group_sums_destroy(struct glint_group_sums *sums); ///< NULL: nothing
 bool glint_group_sums_fit(const struct glint_group_sums *sums,
                           const glint_plan *plan); ///< returns whether they fit; NULL fits frames without light passes
-/// Returns the sums for a batch of a tile; points: the sums for faces and vertices. NULL: the frame has no light
-/// passes.
+/// Returns the sums for a batch of a tile; points: those for faces and vertices. NULL in frames without light passes.
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points);
 
 /// Clears a tile's sums. Then, for each call of shade, adds the light of its lights, and the lights' share of ambient

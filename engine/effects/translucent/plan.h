@@ -2,8 +2,8 @@
 /// Internal.
 ///
 /// A surface of opacity o gives o times the light of the material, and lets 1 - o of a ray go straight on. The first
-/// part needs no stage: the light of a material is linear in its reflectances. The
-/// second part is left to the effects that follow rays: bounce, indirect and transparent_shadow.
+/// part needs no stage: the light of a material is linear in its reflectances. The second part is
+/// left to the effects that follow rays: bounce, indirect and transparent_shadow.
 #ifndef GLINT_TRANSLUCENT_H
 #define GLINT_TRANSLUCENT_H
 
