@@ -72,38 +72,38 @@ typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } 
 
 /// The inputs of a program at a point. Directions are unit vectors.
 typedef enum glint_input {
-    GLINT_INPUT_P_X, ///< the point in the shape's own space, before the transforms of the shape and its groups
-    GLINT_INPUT_P_Y, ///< likewise
-    GLINT_INPUT_P_Z, ///< likewise
-    GLINT_INPUT_WORLD_X, ///< the point in world space
-    GLINT_INPUT_WORLD_Y, ///< likewise
-    GLINT_INPUT_WORLD_Z, ///< likewise
-    GLINT_INPUT_N_X, ///< the geometric normal, facing the viewer
-    GLINT_INPUT_N_Y, ///< likewise
-    GLINT_INPUT_N_Z, ///< likewise
-    GLINT_INPUT_V_X, ///< direction towards the eye
-    GLINT_INPUT_V_Y, ///< likewise
-    GLINT_INPUT_V_Z, ///< likewise
-    /// The shape's own surface coordinates. Plane and disk: lengths along two tangents. Box: 0 .. 1 on each face.
+    GLINT_INPUT_P_X, ///< x of the point in the shape's own space, before the transforms of the shape and its groups
+    GLINT_INPUT_P_Y, ///< its y
+    GLINT_INPUT_P_Z, ///< its z
+    GLINT_INPUT_WORLD_X, ///< x of the point in world space
+    GLINT_INPUT_WORLD_Y, ///< its y
+    GLINT_INPUT_WORLD_Z, ///< its z
+    GLINT_INPUT_N_X, ///< x of the geometric normal, facing the viewer
+    GLINT_INPUT_N_Y, ///< its y
+    GLINT_INPUT_N_Z, ///< its z
+    GLINT_INPUT_V_X, ///< x of the direction towards the eye
+    GLINT_INPUT_V_Y, ///< its y
+    GLINT_INPUT_V_Z, ///< its z
+    /// The first of the shape's own surface coordinates. Plane and disk: lengths along two tangents. Box: 0 .. 1 on each face.
     /// Sphere, cylinder and cone: 0 .. 1 around and along. Torus: 0 .. 1 around its axis and around its tube. Mesh:
     /// interpolated between the corners by barycentric coordinates
     GLINT_INPUT_UV_U,
-    GLINT_INPUT_UV_V, ///< likewise
+    GLINT_INPUT_UV_V, ///< the second surface coordinate
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, in world units
     GLINT_INPUT_UV_FOOTPRINT, ///< width of a pixel at the point, in units of u and v
-    GLINT_INPUT_L_X, ///< direction towards the light; this and all later inputs are for shaders only
-    GLINT_INPUT_L_Y, ///< likewise
-    GLINT_INPUT_L_Z, ///< likewise
-    GLINT_INPUT_LIGHT_R, ///< the light's colour times its intensity times its attenuation
-    GLINT_INPUT_LIGHT_G, ///< likewise
-    GLINT_INPUT_LIGHT_B, ///< likewise
+    GLINT_INPUT_L_X, ///< x of the direction towards the light; this and all later inputs are for shaders only
+    GLINT_INPUT_L_Y, ///< its y
+    GLINT_INPUT_L_Z, ///< its z
+    GLINT_INPUT_LIGHT_R, ///< red part of the light's colour times its intensity times its attenuation
+    GLINT_INPUT_LIGHT_G, ///< its green part
+    GLINT_INPUT_LIGHT_B, ///< its blue part
     GLINT_INPUT_DISTANCE, ///< distance to the light, in world units; infinite for a directional light
-    GLINT_INPUT_KD_R, ///< the material's diffuse reflectance at the point
-    GLINT_INPUT_KD_G, ///< likewise
-    GLINT_INPUT_KD_B, ///< likewise
-    GLINT_INPUT_KS_R, ///< the material's specular reflectance at the point
-    GLINT_INPUT_KS_G, ///< likewise
-    GLINT_INPUT_KS_B, ///< likewise
+    GLINT_INPUT_KD_R, ///< red part of the material's diffuse reflectance at the point
+    GLINT_INPUT_KD_G, ///< its green part
+    GLINT_INPUT_KD_B, ///< its blue part
+    GLINT_INPUT_KS_R, ///< red part of the material's specular reflectance at the point
+    GLINT_INPUT_KS_G, ///< its green part
+    GLINT_INPUT_KS_B, ///< its blue part
     GLINT_INPUT_SHININESS, ///< the material's exponent at the point
     GLINT_INPUT_COUNT ///< number of inputs
 } glint_input;
@@ -146,7 +146,7 @@ typedef enum glint_op {
     GLINT_OP_CLAMP, ///< min(max(x, a), b); operands x, a, b
     // elementary functions, implemented here; special values as in C99, annex F
     GLINT_OP_SIN, ///< sine of an angle in radians; error at most 4e-16, for any angle
-    GLINT_OP_COS, ///< likewise
+    GLINT_OP_COS, ///< cosine of an angle in radians; error at most 4e-16, for any angle
     GLINT_OP_EXP2, ///< 2^a; relative error 2.5e-16
     GLINT_OP_LOG2, ///< relative error 4e-16; absolute error 4e-16 where the result is below 1
     GLINT_OP_POW, ///< a^b; relative error 1e-12
@@ -340,7 +340,7 @@ typedef enum glint_field_type {
     GLINT_TYPE_PROGRAM, ///< a program only
     GLINT_TYPE_TABLE, ///< several fields of the same description, listed in `parts`, that are given together
     GLINT_TYPE_CUSTOM, ///< defined by the caller; no engine table uses it
-    GLINT_TYPE_OTHER ///< likewise
+    GLINT_TYPE_OTHER ///< defined by the caller; no engine table uses it
 } glint_field_type;
 
 #define GLINT_TAKES_PATTERN 1u ///< bits of glint_object_field.takes: a program evaluated at each point
@@ -378,27 +378,27 @@ typedef enum glint_object_kind {
     GLINT_OBJECT_MATERIAL, ///< fields of glint_material_desc
     GLINT_OBJECT_POINT_LIGHT, ///< the fields of glint_light_desc that this kind reads; the kind is
         ///< GLINT_OBJECT_POINT_LIGHT + a glint_light_kind
-    GLINT_OBJECT_DIRECTIONAL_LIGHT, ///< likewise
-    GLINT_OBJECT_SPOT_LIGHT, ///< likewise
-    GLINT_OBJECT_DISK_LIGHT, ///< likewise
-    GLINT_OBJECT_POLYGON_LIGHT, ///< likewise
-    GLINT_OBJECT_SPHERE_LIGHT, ///< likewise
+    GLINT_OBJECT_DIRECTIONAL_LIGHT, ///< fields of a directional light
+    GLINT_OBJECT_SPOT_LIGHT, ///< fields of a spot light
+    GLINT_OBJECT_DISK_LIGHT, ///< fields of a disk light
+    GLINT_OBJECT_POLYGON_LIGHT, ///< fields of a polygon light
+    GLINT_OBJECT_SPHERE_LIGHT, ///< fields of a sphere light
     GLINT_OBJECT_SCENE, ///< fields of glint_scene_desc
     GLINT_OBJECT_CAMERA, ///< fields of glint_camera_desc
     GLINT_OBJECT_SPHERE, ///< the fields of glint_shape_desc that this kind reads; the kind is GLINT_OBJECT_SPHERE + a
         ///< glint_shape_kind
-    GLINT_OBJECT_PLANE, ///< likewise
-    GLINT_OBJECT_SPHERES, ///< likewise
-    GLINT_OBJECT_MESH, ///< likewise
-    GLINT_OBJECT_BOX, ///< likewise
-    GLINT_OBJECT_DISK, ///< likewise
-    GLINT_OBJECT_CYLINDER, ///< likewise
-    GLINT_OBJECT_CONE, ///< likewise
-    GLINT_OBJECT_TORUS, ///< likewise
-    GLINT_OBJECT_GROUP, ///< likewise
-    GLINT_OBJECT_UNION, ///< likewise
-    GLINT_OBJECT_INTERSECTION, ///< likewise
-    GLINT_OBJECT_DIFFERENCE, ///< likewise
+    GLINT_OBJECT_PLANE, ///< fields of a plane
+    GLINT_OBJECT_SPHERES, ///< fields of many spheres
+    GLINT_OBJECT_MESH, ///< fields of a mesh
+    GLINT_OBJECT_BOX, ///< fields of a box
+    GLINT_OBJECT_DISK, ///< fields of a disk
+    GLINT_OBJECT_CYLINDER, ///< fields of a cylinder
+    GLINT_OBJECT_CONE, ///< fields of a cone
+    GLINT_OBJECT_TORUS, ///< fields of a torus
+    GLINT_OBJECT_GROUP, ///< fields of a group
+    GLINT_OBJECT_UNION, ///< fields of a union
+    GLINT_OBJECT_INTERSECTION, ///< fields of an intersection
+    GLINT_OBJECT_DIFFERENCE, ///< fields of a difference
     GLINT_OBJECT_KINDS ///< number of kinds
 } glint_object_kind;
 
@@ -945,7 +945,7 @@ typedef enum glint_overlay_kind {
 #define GLINT_POINT_BEGINS 1u ///< bits of point_flags: no segment leads to this point
 #define GLINT_POINT_MARKED 2u ///< a dot is drawn at the point
 
-/// What is drawn of the part of an arrow, a line or an arc, or of a label at a point, that lies behind surfaces.
+/// How an arrow, a line, an arc or a label at a point is drawn where surfaces hide it.
 /// Surfaces count at any opacity.
 typedef enum glint_hidden {
     GLINT_HIDDEN_DRAWN, ///< the same as in front of surfaces
@@ -956,8 +956,8 @@ typedef enum glint_hidden {
 
 /// A table of 256 colours, from the lowest value to the highest.
 typedef enum glint_colormap {
-    GLINT_COLORMAP_VIRIDIS, ///< this one and the next: N. Smith and S. van der Walt, 2015
-    GLINT_COLORMAP_MAGMA, ///< likewise
+    GLINT_COLORMAP_VIRIDIS, ///< N. Smith and S. van der Walt, 2015
+    GLINT_COLORMAP_MAGMA, ///< N. Smith and S. van der Walt, 2015
     GLINT_COLORMAP_CIVIDIS, ///< J. R. Nunez, C. R. Anderton and R. S. Renslow, 2018
     GLINT_COLORMAP_TURBO, ///< A. Mikhailov, 2019
     GLINT_COLORMAP_COOLWARM, ///< K. Moreland, 2009
@@ -1323,10 +1323,10 @@ typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLIN
 /// The derivative of one field of the scene with respect to a parameter. At most one of the four objects is not NULL;
 /// if all are NULL, it is a field of the scene's own description.
 typedef struct glint_slope {
-    const glint_material *material; ///< the owner of the field, one of these four; or NULL
-    const glint_light *light; ///< likewise
-    const glint_shape *shape; ///< likewise
-    const glint_camera *camera; ///< likewise
+    const glint_material *material; ///< the object that has the field, if it is a material; otherwise NULL
+    const glint_light *light; ///< the owner, if it is a light
+    const glint_shape *shape; ///< the owner, if it is a shape
+    const glint_camera *camera; ///< the owner, if it is a camera
     const char *field; ///< name of the field in the description, one of those listed at glint_derivative
     double slope[3]; ///< slope of each component; a single number uses the first
     /// For a material's field that a program computes: the derivative at each point, from glint_program_tangent;
@@ -1873,8 +1873,8 @@ typedef struct glint_sheet_desc {
     int columns; ///< >= 1
     const char *title; ///< title of the sheet; NULL: none
     const char *across, *down; ///< names of the columns and of the rows, at most 1000 bytes each; NULL: none
-    /// Heads: a text above each column, beside each row, and above each block of `block_rows` rows; NULL: none. The text
-    /// above a column has parts like a label
+    /// Heads: a text above each column, next to each row, and above each block of `block_rows` rows; NULL: none. The
+    /// text above a column has parts like a label
     const char *const *column_heads, *const *row_heads, *const *block_heads;
     int block_rows; ///< >= 1 with `block_heads`
     /// Number of the cell, from 1, that each row is compared with in an extra row below it; 0: no such rows
@@ -1890,9 +1890,9 @@ typedef struct glint_sheet_desc {
     const glint_overlay_desc *colorbar;
 } glint_sheet_desc;
 
-/// Draws finished pictures in rows, with labels, as one 8-bit .png, .svg or .pdf: dark text on white. If a picture is missing or
-/// differs in size from the first, the error names it and the file is unchanged. A row of differences holds `gain`
-/// times |cell - chosen cell|, in 8-bit sRGB values.
+/// Draws finished pictures in rows, with labels, as one 8-bit .png, .svg or .pdf: dark text on white. If a picture is
+/// missing or differs in size from the first, the error names it and the file is unchanged. A row of differences holds
+/// `gain` times |cell - chosen cell|, in 8-bit sRGB values.
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
 /// An animated PNG being written.
