@@ -143,7 +143,7 @@ static char *sibling(const char *path, const char *name)
     return out;
 }
 
-/// As target_of, but also follows a link to a file that does not exist yet.
+/// Does the same as target_of, but also follows a link to a file that does not exist yet.
 static char *end_of_links(const char *path)
 {
     char link[PATH_MAX];

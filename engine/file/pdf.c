@@ -253,7 +253,7 @@ static cairo_status_t append(void *out, const unsigned char *bytes, unsigned siz
     return glint_bytes_append(out, bytes, size) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_NO_MEMORY;
 }
 
-/// Sets what draws letters at the same positions as in a .png.
+/// Turns hinting off, so that letters have the same positions as in a .png, and makes strokes round.
 static void set_options(cairo_t *cairo)
 {
     cairo_font_options_t *options = cairo_font_options_create();

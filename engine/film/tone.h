@@ -13,7 +13,7 @@ typedef struct glint_tone_table {
     float white, top; ///< as in glint_tone_args
     uint32_t *lut; ///< 8 bits: the table of the tone stage, see stages.h
     bool has_fit; ///< 8 bits: whether the fit of the tone stage exists, which only the curve `clamp` has
-    glint_tone_fit fit; ///< likewise
+    glint_tone_fit fit; ///< the fit, if `has_fit`
     float *threshold; ///< 16 bits: [k] is the first float of code k, k = 0 .. 65535, then +inf
     float (*guess)[2]; ///< 16 bits, for each bucket of 2^15 floats: the code at its first float, and codes per step
 } glint_tone_table;

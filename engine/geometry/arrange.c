@@ -18,7 +18,7 @@ typedef struct arrangement {
     glint_prim *prims;
     uint32_t count;
     uint32_t *rest; ///< old positions of the primitives that come after the last one in the BVH
-    uint8_t *done; ///< for each position
+    uint8_t *done; ///< whether each position has its final primitive
     glint_prim *first; ///< copies of the primitives that were at the positions where walks begin
     double (*corners)[3][3]; ///< memory for all corners in their new order; NULL: there are none
     uint32_t *chunks; ///< scratch: one number for each chunk of primitives or of parts of combined solids

@@ -39,7 +39,7 @@ typedef struct cut {
 typedef struct glint_chunk {
     bins bins;
     bounds box; ///< when loading: bounds of the chunk's boxes
-    bounds center; ///< loading: of all
+    bounds center; ///< when loading: bounds of the centres of these boxes
     uint32_t begin, count; ///< in the set
 } chunk;
 
@@ -52,8 +52,8 @@ typedef struct piece {
 } piece;
 
 typedef struct split_work {
-    glint_record *records; ///< of the set
-    uint32_t *wrong; ///< the same for their numbers in the set
+    glint_record *records; ///< records of the set
+    uint32_t *wrong; ///< the set's part of the scratch `wrong` of glint_records
     chunk *chunks;
     piece pieces[2][CHUNKS_MAX]; ///< pieces of the lower part and of the upper part
     size_t count; ///< number of chunks, and of pieces of each part

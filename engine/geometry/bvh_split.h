@@ -27,7 +27,7 @@ typedef struct glint_record_set {
 /// order does not depend on the number of workers.
 typedef struct glint_records {
     glint_record *all; ///< owned
-    /// owned; scratch of splits, of the same length: the records of a piece that are in the wrong part
+    /// owned; scratch of splits, as long as `all`: indices of the records of a piece that are in the wrong part
     uint32_t *wrong;
     uint32_t count;
     struct glint_chunk *chunks; ///< owned; scratch of splits by several workers

@@ -57,7 +57,7 @@ typedef struct glint_ink_mark {
     glint_rect clip; ///< the mark is drawn only inside; inside the page
     glint_rect box; ///< the rectangle of a fill; the box of a text with the line's pad at both ends, whose width is along
         ///< the text unless it is turned
-    char *text; ///< of a text: UTF-8, one line; glint_line_set has its runs and rules. Owned
+    char *text; ///< of a text: UTF-8, one line; glint_line_set computes its runs and rules. Owned
     glint_typeface typeface; ///< of a text
     glint_turn turn; ///< of a text
     glint_strokes strokes; ///< owned

@@ -4,12 +4,12 @@
 
 #include "engine/ink/ink.h"
 
-/// A rectangle of one colour, with the codes of one picture.
+/// A rectangle of one colour, in the pixel values of one picture.
 typedef struct glint_stamp {
     int x, y, width, height; ///< rectangle in the whole picture, pixels; may lie outside the picture
     uint8_t *coverage; ///< width * height values; NULL: 255 everywhere. Owned
     uint8_t opacity; ///< factor of the coverage; 255: opaque
-    uint16_t ink[3]; ///< codes
+    uint16_t ink[3]; ///< pixel values of the colour
 } glint_stamp;
 
 /// Stamps in drawing order, for one picture.
@@ -17,8 +17,8 @@ typedef struct glint_stamps {
     glint_stamp *of;
     size_t count, capacity;
     bool lost; ///< out of memory: some stamps are missing
-    glint_transfer transfer; ///< of the codes
-    int bits; ///< bits of the codes: 8 or 16
+    glint_transfer transfer; ///< transfer function of the pixel values
+    int bits; ///< bits of a pixel value: 8 or 16
 } glint_stamps;
 
 /// Returns the pixel value of a linear value. bits  8 or 16.
@@ -37,7 +37,7 @@ bool glint_stamps_mask(glint_stamps *stamps, const glint_rect *clip, int x, int 
 void glint_stamps_strokes(glint_stamps *stamps, const glint_ink_mark *mark);
 /// Returns whether a stamp has a pixel in the `count` rows of the whole picture that begin with row `first`.
 bool glint_stamps_touch(const glint_stamps *stamps, int first, int count);
-/// Draws the stamps on a row of codes.
+/// Draws the stamps on a row of pixel values.
 /// codes     `width` pixels of 3 or 4 channels, of the stamps' bits; alpha is not premultiplied.
 /// x, y      of the first pixel, in the whole picture.
 void glint_stamps_row(const glint_stamps *stamps, int x, int y, int width, int channels, void *codes);

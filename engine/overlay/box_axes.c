@@ -133,7 +133,7 @@ static bool is_seen(const box_axes *axes, int direction, int end)
     return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - position) > 0;
 }
 
-/// Clips an edge to the part in front of the eye; false: no part of it is.
+/// Clips an edge to the part in front of the eye; false: there is no such part.
 static bool cut(const box_axes *axes, edge *e)
 {
     const double a = depth_of(axes, e->ends[0]), b = depth_of(axes, e->ends[1]), least = axes->nearest * (1 + 1e-9);

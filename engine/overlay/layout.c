@@ -10,8 +10,8 @@
 #define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
-/// Wraps the lines of a label at spaces outside formulas if they are wider than the picture less its margins. A word wider than that
-/// stays whole.
+/// Breaks the lines of a label that are wider than the picture without its margins. Lines break at spaces outside
+/// formulas. A word that is wider stays whole.
 static void wrap(glint_layout *layout, double margin)
 {
     const int most = layout->overlays->width - 2 * layout->padding, space = most - 2 * (int)ceil(margin);

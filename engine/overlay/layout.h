@@ -11,7 +11,7 @@ typedef struct glint_layout {
     const glint_overlay_desc *desc;
     glint_ink *ink; ///< the overlay is drawn there. Borrowed; its font is the overlay's
     glint_place *places; ///< curves and text positions of all overlays; NULL: no overlay points at the world. Borrowed
-    glint_place *place; ///< of this one
+    glint_place *place; ///< this overlay's entry in `places`; NULL without `places`
     const glint_hidden_parts *hidden; ///< hidden parts of the overlay's curve; NULL: none
     glint_typeface typeface;
     double dpi; ///< pixels per inch; 0: not given

@@ -7,19 +7,19 @@
 #define GLINT_ARC_POINTS 65 ///< points of an arc
 #define GLINT_POINTER_POINTS (2 * GLINT_OVERLAY_POINTS_MAX) ///< most points: each piece of a polyline may be cut
 
-/// The points of an overlay that points at the world, as far as they lie in front of the camera, in order: 1 for a
-/// label, 2 for an arrow or a line, 65 for an arc, and those of a polyline. The curve through them has a parameter that is i at point i and
-/// grows evenly in the picture between points.
+/// The points of an overlay that points at the world, in order, as far as they lie in front of the camera: 1 for a
+/// label, 2 for an arrow or a line, 65 for an arc, and all points of a polyline. The parameter of the curve through the
+/// points is i at point i. Between points it grows evenly in the picture.
 typedef struct glint_pointer {
     int count; ///< 0: nothing is drawn
     double world[GLINT_POINTER_POINTS][3];
     double pixel[GLINT_POINTER_POINTS][2]; ///< positions in pixels from the picture's upper left corner
     double depth[GLINT_POINTER_POINTS]; ///< along the view
-    bool starts[GLINT_POINTER_POINTS]; ///< of a polyline: no piece leads to the point
-    bool marked[GLINT_POINTER_POINTS]; ///< of a polyline: a dot is drawn at the point
+    bool starts[GLINT_POINTER_POINTS]; ///< for a polyline: whether no piece leads to the point
+    bool marked[GLINT_POINTER_POINTS]; ///< for a polyline: whether a dot is drawn at the point
     double range[2]; ///< first and last parameter to draw; for lines, limited to the part in and close to the picture
     bool behind[2]; ///< whether the begin and the end of a line lie behind the camera; for an arc or a label both
-        ///< flags are equal. Of a polyline: whether a piece begins or ends there
+        ///< flags are equal. For a polyline: whether a piece begins or ends behind the camera
 } glint_pointer;
 
 /// Computes the curve of an overlay that points.

@@ -44,8 +44,8 @@ typedef struct layout {
     int rows, blocks;
     int column, label; ///< width of a column; height of the label below a picture
     int difference; ///< height of the text below a difference; 0: no differences
-    int column_head, row_head, block_head; ///< height of the heads above columns, width of the heads beside rows, height of
-        ///< the heads above blocks; 0: none
+    int column_head, row_head, block_head; ///< height of the heads above columns, width of the heads
+        ///< next to rows, height of the heads above blocks; 0: none
     int left, top; ///< position of the first picture, without the head of its block
     int band; ///< height of a row of pictures together with its row of differences
     int gap;
@@ -384,7 +384,7 @@ static void draw_bar(layout *l)
     glint_colorbar_draw_alone(&l->bar, &l->ink, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift));
 }
 
-/// Draws the heads above columns and blocks, and beside rows.
+/// Draws the heads above columns and blocks, and next to rows.
 static void draw_heads(layout *l)
 {
     const glint_sheet_desc *desc = l->desc;

@@ -21,7 +21,7 @@ typedef struct glint_style {
 
 /// The runs and rules of a part of the formula, and its extents; pixels.
 typedef struct glint_box {
-    int runs[2], rules[2]; ///< the first, and the one after the last
+    int runs[2], rules[2]; ///< index of the first one, and of the one after the last
     double width;
     double above, below; ///< from the baseline
     double lean; ///< how far the last letter extends beyond the width; added before a superscript
