@@ -25,7 +25,7 @@ static glint_status check_part(const glint_picture_part *part, const glint_pictu
     if (part->x < 0 || part->y < 0 || part->x > to->width - glint_picture_width(part->picture) ||
         part->y > to->height - glint_picture_height(part->picture))
         return glint_fail(error, GLINT_ERR_INVALID,
-                          "parts[%zu]: a place within %d x %d expected, got %d, %d of %d x %d", number, to->width,
+                          "parts[%zu]: a position within %d x %d expected, got %d, %d of %d x %d", number, to->width,
                           to->height, part->x, part->y, glint_picture_width(part->picture),
                           glint_picture_height(part->picture));
     return GLINT_OK;

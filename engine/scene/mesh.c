@@ -214,12 +214,12 @@ static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error
     if (desc->normals && (desc->normal_count < 1 || desc->normal_count > MOST))
         return glint_fail(error, GLINT_ERR_INVALID, "normals: 1 .. %zu expected, got %zu", MOST, desc->normal_count);
     if (desc->normals && !desc->normal_corners && desc->normal_count != desc->vertex_count)
-        return glint_fail(error, GLINT_ERR_INVALID, "normals: one a vertex (%zu) expected, got %zu", desc->vertex_count,
-                          desc->normal_count);
+        return glint_fail(error, GLINT_ERR_INVALID, "normals: one per vertex (%zu) expected, got %zu",
+                          desc->vertex_count, desc->normal_count);
     if (desc->uv && (desc->uv_count < 1 || desc->uv_count > MOST))
         return glint_fail(error, GLINT_ERR_INVALID, "uv: 1 .. %zu expected, got %zu", MOST, desc->uv_count);
     if (desc->uv && !desc->uv_corners && desc->uv_count != desc->vertex_count)
-        return glint_fail(error, GLINT_ERR_INVALID, "uv: one a vertex (%zu) expected, got %zu", desc->vertex_count,
+        return glint_fail(error, GLINT_ERR_INVALID, "uv: one per vertex (%zu) expected, got %zu", desc->vertex_count,
                           desc->uv_count);
     for (size_t i = 0; i < desc->material_count; i++)
         if (!desc->materials[i])

@@ -219,8 +219,8 @@ static glint_status check_head(const glint_mesh_reader *r, const glint_ply_head 
                     : glint_ply_sizes[e->properties[k].is_list ? e->properties[k].count_type : e->properties[k].type];
         if (e->count > 0 && (least == 0 || e->count > r->text.size / least))
             return glint_fail(r->error, GLINT_ERR_FORMAT,
-                              "%s: element %s: no more than the file has room for expected, got %llu", r->text.path,
-                              e->name, (unsigned long long)e->count);
+                              "%s: element %s: rows that fit into the file expected, got %llu", r->text.path, e->name,
+                              (unsigned long long)e->count);
         positions = positions || (glint_ply_has_role(e, GLINT_PLY_X) && glint_ply_has_role(e, GLINT_PLY_Y) &&
                                   glint_ply_has_role(e, GLINT_PLY_Z));
         faces = faces || glint_ply_has_role(e, GLINT_PLY_VERTEX_NUMBERS);

@@ -216,7 +216,7 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
     GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
     if (desc->kind > GLINT_SHAPE_DIFFERENCE || desc->kind == GLINT_SHAPE_SPHERES || desc->kind == GLINT_SHAPE_MESH)
-        return glint_fail(error, GLINT_ERR_INVALID, "kind: one that needs only a description expected");
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: any kind except spheres and mesh expected");
     glint_status status = check(desc, error);
     if (status)
         return status;

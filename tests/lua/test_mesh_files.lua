@@ -403,9 +403,9 @@ function tests.refused()
   refuses(": an element face with a list vertex_indices expected, got 3 vertices and no face; " ..
     "glint.points reads point clouds", "a.ply",
     head .. vertex .. "end_header\n0 0 0\n1 0 0\n0 1 0\n")
-  refuses(": element vertex: no more than the file has room for expected, got 1000000000000", "a.ply",
+  refuses(": element vertex: rows that fit into the file expected, got 1000000000000", "a.ply",
     head .. "element vertex 1000000000000\nproperty int x\nproperty int y\nproperty int z\n" .. face .. "end_header\n")
-  refuses(": element dust: no more than the file has room for expected, got 9", "a.ply", head .. "element dust 9\n" .. vertex .. face ..
+  refuses(": element dust: rows that fit into the file expected, got 9", "a.ply", head .. "element dust 9\n" .. vertex .. face ..
     "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
   local body = head .. vertex .. face .. "end_header\n0 0 0\n1 0 0\n0 1 0\n"
   refuses(":13: face 1 of 1: a vertex number 0 .. 2 expected, got 3", "a.ply", body .. "3 0 1 3\n")
