@@ -84,9 +84,9 @@ typedef enum glint_input {
     GLINT_INPUT_V_X, ///< x of the direction towards the eye
     GLINT_INPUT_V_Y, ///< its y
     GLINT_INPUT_V_Z, ///< its z
-    /// The first of the shape's own surface coordinates. Plane and disk: lengths along two tangents. Box: 0 .. 1 on each face.
-    /// Sphere, cylinder and cone: 0 .. 1 around and along. Torus: 0 .. 1 around its axis and around its tube. Mesh:
-    /// interpolated between the corners by barycentric coordinates
+    /// The first of the shape's own surface coordinates. Plane and disk: lengths along two tangents. Box: 0 .. 1 on
+    /// each face. Sphere, cylinder and cone: 0 .. 1 around and along. Torus: 0 .. 1 around its axis and around its
+    /// tube. Mesh: interpolated between the corners by barycentric coordinates
     GLINT_INPUT_UV_U,
     GLINT_INPUT_UV_V, ///< the second surface coordinate
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, in world units

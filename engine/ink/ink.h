@@ -86,8 +86,9 @@ glint_status glint_ink_check(const glint_ink *ink, glint_error *error);
 void glint_ink_clip(glint_ink *ink, const glint_rect *rect);
 /// Fills a rectangle. opacity  0 .. 1.
 void glint_ink_fill(glint_ink *ink, int x, int y, int width, int height, const double color[3], double opacity);
-/// Draws the first `size` bytes of UTF-8 text, at most to its end, as a line that may contain formulas. x, y  the upper
-/// left corner of the line, whose size glint_line_set computes; of a turned text the upper left corner of its turned box.
+/// Draws the first `size` bytes of UTF-8 text, at most to its end, as a line that may contain formulas.
+/// x, y  upper left corner of the line, whose size glint_line_set computes; for a turned text, upper left corner of the
+///       turned box.
 void glint_ink_text(glint_ink *ink, const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_turn turn,
                     const double color[3]);
 /// Draws strokes as one antialiased shape. Copies the strokes.

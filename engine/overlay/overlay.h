@@ -1,4 +1,5 @@
-/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs, polylines, charts. Internal.
+/// Overlays, drawn over a finished picture: labels, colour bars, axes, arrows, lines, arcs, polylines, charts.
+/// Internal.
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key

@@ -1,5 +1,6 @@
 /// The glyphs of font.c: 8 by 13 pixels each, from the font "Misc Fixed" 8x13 of the X Window System, whose whole
-/// licence is "Public domain font. Share and enjoy." (font-misc-misc/COPYING). Latin-1, Greek, signs of formulas. Internal.
+/// licence is "Public domain font. Share and enjoy." (font-misc-misc/COPYING). Latin-1, Greek, signs of formulas.
+/// Internal.
 #ifndef GLINT_TEXT_FONT_TABLE_H
 #define GLINT_TEXT_FONT_TABLE_H
 

@@ -67,7 +67,8 @@ const char *glint_letters_library(void);
 void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line);
 /// Returns the width of the first `size` bytes of UTF-8 text, at most to its end; pixels.
 int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size);
-/// Places the letters of a run. out: glint_font_count(run->text, run->size) letters. Returns the width of the run, pixels.
+/// Places the letters of a run and returns the width of the run, pixels.
+/// out  written: glint_font_count(run->text, run->size) letters.
 double glint_letters_place(glint_letters *letters, const glint_run *run, glint_letter *out);
 /// Returns by how many pixels the strokes of a run are wider than the font's; 0 unless the run is bold.
 double glint_letters_growth(const glint_run *run);

@@ -61,8 +61,8 @@ double glint_typeface_advance(const glint_typeface *typeface, const glint_run *r
     return (double)glint_font_count(run->text, run->size) * GLINT_FONT_WIDTH * glint_typeface_scale(run->em);
 }
 
-/// Returns the pixels of a glyph of the bitmap font, in pixels of that font: left, right, top and bottom edge. False: it
-/// has none.
+/// Writes the edges of the box around a glyph of the bitmap font, in pixels of that font: left, right, top and bottom.
+/// False: the glyph is blank.
 static bool glyph_box(const uint8_t *glyph, int box[4])
 {
     box[0] = GLINT_FONT_WIDTH;

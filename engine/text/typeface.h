@@ -17,7 +17,8 @@ typedef struct glint_typeface {
 glint_typeface glint_typeface_open(glint_letters *letters, double em);
 /// Returns the width of the first `size` bytes of UTF-8 text, at most to its end; pixels.
 int glint_typeface_width(const glint_typeface *typeface, const char *text, size_t size);
-/// Places the letters of a run. out: glint_font_count(run->text, run->size) letters. Returns the width of the run, pixels.
+/// Places the letters of a run and returns the width of the run, pixels.
+/// out  written: glint_font_count(run->text, run->size) letters.
 double glint_typeface_place(const glint_typeface *typeface, const glint_run *run, glint_letter *out);
 /// Returns the picture pixels for each pixel of the bitmap font.
 int glint_typeface_scale(double em);
