@@ -789,17 +789,17 @@ bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[
 // position count as one. Its shading is faceted or phong. A point is inside if a path from it leaves the mesh more
 // often than it enters. A mesh of negative volume is turned inside out first.
 //
-// The whole is one object. A part is visible only where it bounds the whole, and has its own material there, in its
-// own space. Light that enters through any part is in one medium, with `ior` and `absorption` of the whole's
+// A combined solid is one object. A part is visible only where it bounds the solid, and has its own material there, in
+// its own space. Light that enters through any part is in one medium, with `ior` and `absorption` of the solid's
 // material. `two_sided` of parts is ignored. Coincident faces enclose nothing: a box minus a box that ends at the
-// same face is open there. Where several parts bound the whole at the same place, the first defined is visible.
+// same face is open there. Where several parts bound the solid at the same place, the first defined is visible.
 
 /// Adds a shape to a group or combined solid, which retains it. The shape may also be in other groups and scenes: it
 /// appears in each, under all transforms around it, and a change to it shows everywhere. Refused: a group inside
 /// itself, the same shape twice, and in a combined solid a shape without an inside. The message then names an open
 /// edge of a mesh.
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
-/// Removes the shape from the group or combined solid and releases it. GLINT_ERR_INVALID if the shape is not in there.
+/// Removes the shape from the group or combined solid and releases it. GLINT_ERR_INVALID if the shape is not in it.
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);
 /// Returns the number of shapes directly in the group or combined solid, not counting those in nested groups.
 size_t glint_group_count(const glint_shape *group);
@@ -1200,7 +1200,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
 
 /// A straight part of the path of a ray.
 typedef struct glint_segment {
-    double from[3], direction[3]; ///< begin; unit direction
+    double from[3], direction[3]; ///< start; unit direction
     bool hit; ///< whether the segment ends at a surface
     double to[3]; ///< its end; only if `hit`
 } glint_segment;

@@ -19,7 +19,7 @@
 typedef struct pdf {
     cairo_t *cairo;
     const glint_figure *figure;
-    cairo_font_face_t *face; ///< of all texts; NULL: no text so far
+    cairo_font_face_t *face; ///< font of all texts; NULL: no text so far
     bool lost; ///< out of memory outside of cairo
 } pdf;
 

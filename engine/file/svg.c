@@ -17,7 +17,7 @@
 typedef struct svg {
     glint_bytes *out;
     const glint_figure *figure;
-    glint_rect clip; ///< of the open group
+    glint_rect clip; ///< clip rectangle of the open group
     int clips; ///< number of clip paths so far
     bool lost; ///< out of memory
 } svg;

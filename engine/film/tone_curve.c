@@ -14,7 +14,7 @@
 #define HABLE_E 0.02
 #define HABLE_F 0.30
 #define HABLE_WHITE 11.2
-#define HABLE_BIAS 2.0 // his factor for the light
+#define HABLE_BIAS 2.0 // Hable's factor for the light
 
 static double hable(double x)
 {

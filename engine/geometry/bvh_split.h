@@ -16,7 +16,7 @@ typedef glint_bounds glint_record;
 
 /// Consecutive records.
 typedef struct glint_record_set {
-    glint_bounds box; ///< of the boxes
+    glint_bounds box; ///< bounds of the boxes
     glint_bounds center; ///< bounds of the boxes' centres; centres are halved so that no difference overflows
     uint32_t begin, count;
     uint32_t splits; ///< number of splits by position on the path from the root to this set

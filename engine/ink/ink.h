@@ -55,8 +55,8 @@ typedef struct glint_ink_mark {
     double color[3]; ///< linear
     double opacity; ///< 0 .. 1
     glint_rect clip; ///< the mark is drawn only inside; inside the page
-    glint_rect box; ///< the rectangle of a fill; the box of a text with the line's pad at both ends, whose width is along
-        ///< the text unless it is turned
+    glint_rect box; ///< rectangle of a fill, or box of a text with the line's pad at both ends; its width is measured
+        ///< along the text unless the text is turned
     char *text; ///< of a text: UTF-8, one line; glint_line_set computes its runs and rules. Owned
     glint_typeface typeface; ///< of a text
     glint_turn turn; ///< of a text
@@ -67,7 +67,7 @@ typedef struct glint_ink_mark {
 typedef struct glint_ink {
     int width, height; ///< size of the page, pixels
     glint_letters *letters; ///< the font of all texts. Owned; NULL: the bitmap font
-    glint_rect clip; ///< of the next marks
+    glint_rect clip; ///< clip rectangle of the next marks
     glint_ink_mark *of; ///< in drawing order
     size_t count, capacity;
     bool lost; ///< out of memory: some marks are missing

@@ -25,7 +25,7 @@ typedef struct rect {
 
 typedef struct edge {
     double ends[2][3]; ///< in the world
-    double shares[2]; ///< the part of the edge in front of the eye: its begin and end, 0 .. 1 between `ends`
+    double shares[2]; ///< the part of the edge in front of the eye: its start and end, 0 .. 1 between `ends`
     double at[2][2]; ///< ends of that part in the picture, pixels
     double out[2]; ///< unit vector in the picture, perpendicular to the edge and away from the box
 } edge;

@@ -14,7 +14,7 @@
 #define HEAD_HALF 2.0 ///< half of the head's width, in widths of its line
 #define DOT 3.0 ///< size of a dot, in widths of its line
 #define DASH 3.0 ///< length of a dash, in widths of its line
-#define PERIOD 7.0 ///< distance from the begin of a dash to the begin of the next, in widths of its line
+#define PERIOD 7.0 ///< distance from the start of a dash to the start of the next, in widths of its line
 #define RADIUS_SHARE 12.0 ///< the default radius of an arc is the picture's height divided by this
 #define SPACE 0.3 ///< distance between a text and what it must not cover, in font sizes
 #define FAR 1e6 ///< limit of the coordinates of a text's corner, pixels
@@ -25,7 +25,7 @@ static double length_of(double x, double y) { return sqrt(x * x + y * y); }
 // ---- Curves ----
 
 /// Cuts the line from `from` to `from` + `offset` at the sides of a rectangle. Returns false if it lies outside.
-/// range  in: begin and end of the part to cut, 0 .. 1 along the line; out: begin and end of what lies inside.
+/// range  in: start and end of the part to cut, 0 .. 1 along the line; out: start and end of what lies inside.
 static bool cut_to_rect(const double from[2], const double offset[2], const double low[2], const double high[2],
                         double range[2])
 {
@@ -80,7 +80,7 @@ bool glint_pointer_is_point(const glint_overlay_desc *desc)
 }
 
 /// Cuts piece `i` of a curve at a rectangle a little larger than the picture. Returns false if it lies outside.
-/// range  in: begin and end of the part to cut, 0 .. 1 along the piece; out: begin and end of what lies inside.
+/// range  in: start and end of the part to cut, 0 .. 1 along the piece; out: start and end of what lies inside.
 static bool cut_piece(const glint_overlays *overlays, const glint_pointer *p, int i, double range[2])
 {
     const double sides[2] = { overlays->width, overlays->height }, margin = fmax(sides[0], sides[1]) / 4;
@@ -158,7 +158,7 @@ static void find_arc(const glint_overlays *overlays, const glint_overlay_desc *d
 }
 
 /// Adds piece `i` of a polyline, from its point i - 1 to its point i, or the part of it in front of the camera. joins:
-/// the last point added is the begin of the piece. Returns whether the whole piece is in front.
+/// the last point added is the start of the piece. Returns whether the whole piece is in front.
 static bool add_piece(const glint_overlays *overlays, const glint_overlay_desc *desc, size_t i, bool joins, glint_pointer *p)
 {
     const int first = p->count;
@@ -352,8 +352,8 @@ void glint_pointer_draw(const glint_layout *layout, double dpi)
 
 // ---- Texts ----
 
-/// Returns the parameter of the curve's point that the text is next to: the tip of an arrow, the begin of a path, the eye
-/// of a frustum, the middle of other curves.
+/// Returns the parameter of the curve's point that the text is next to: the tip of an arrow, the start of a path, the
+/// eye of a frustum, the middle of other curves.
 static double anchor_at(const glint_overlay_desc *desc, const glint_pointer *p)
 {
     if (desc->kind >= GLINT_OVERLAY_PATH)

@@ -18,7 +18,7 @@ typedef struct glint_pointer {
     bool starts[GLINT_POINTER_POINTS]; ///< for a polyline: whether no piece leads to the point
     bool marked[GLINT_POINTER_POINTS]; ///< for a polyline: whether a dot is drawn at the point
     double range[2]; ///< first and last parameter to draw; for lines, limited to the part in and close to the picture
-    bool behind[2]; ///< whether the begin and the end of a line lie behind the camera; for an arc or a label both
+    bool behind[2]; ///< whether the start and the end of a line lie behind the camera; for an arc or a label both
         ///< flags are equal. For a polyline: whether a piece begins or ends behind the camera
 } glint_pointer;
 

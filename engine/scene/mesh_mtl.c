@@ -132,7 +132,7 @@ static const char *read_options(const glint_mesh_text *text, const char *at, map
     return at;
 }
 
-/// Returns the end of a picture's name: the end of the line, or the begin of the options that follow the name.
+/// Returns the end of a picture's name: the end of the line, or the start of the options that follow the name.
 static const char *find_name_end(const char *at)
 {
     const char *end = at;

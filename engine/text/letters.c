@@ -29,7 +29,7 @@ double glint_letters_growth(const glint_run *run) { return run->bold ? run->em *
 struct glint_letters {
     FT_Library library;
     FT_Face face;
-    char *path; ///< of the font. Owned
+    char *path; ///< path of the font's file. Owned
     struct FT_MemoryRec_ memory; ///< FreeType continues after a failed allocation, so this allocator records the
         ///< failure
     bool lost;

@@ -47,7 +47,7 @@ glint_key glint_letters_key(const glint_letters *letters);
 typedef struct glint_letter {
     uint32_t glyph; ///< its number in the font's file; of the bitmap font, its Unicode code
     uint32_t code; ///< its Unicode code; U+FFFD for an invalid byte
-    double x; ///< where the letter begins; pixels from the begin of the run
+    double x; ///< where the letter begins; pixels from the start of the run
 } glint_letter;
 
 /// The font's file and its names. The strings are borrowed.

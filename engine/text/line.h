@@ -37,7 +37,7 @@ void glint_line_set(const glint_typeface *typeface, const char *text, size_t siz
 /// Checks the formulas of a text of several lines; the message begins with `name`.
 glint_status glint_line_check(const char *name, const char *text, glint_error *error);
 /// Returns the next blank of a line, from `at` to `end`, that is not part of a formula; NULL: none.
-/// line  the begin of the line.
+/// line  the start of the line.
 const char *glint_line_blank(const char *line, const char *at, const char *end);
 /// Draws a line into the mask. The left end of its baseline is at the upper edge of row y.
 void glint_line_draw(const glint_typeface *typeface, const glint_line *line, int x, int y, glint_mask *mask);
