@@ -183,7 +183,7 @@ browser() {
     same "its first picture" "$(move page.html '[]')" "1, 80x60, specular = 0.25  shininess = 3"
     same "another place on both axes" "$(move page.html '[[0, 2], [1, 1]]')" "6, 80x60, specular = 0.75  shininess = 9"
     same "the grid with its axes, and a picture of it that is pressed" "$(press page.html 5)" \
-        "9; |specular: |0.25|0.5|0.75; shininess = 3|shininess = 9|shininess = 200; specular = 0.75  shininess = 9; true; 5; 1; 5; 2 1"
+        "9; |specular: shininess|0.25|0.5|0.75; 3|9|200; ; true; 5; 1; 5; 2 1"
     check "a page of chosen pictures" "$GLINT" sheet s_0002.png s_0004.png -o two.html --difference 1
     same "in a row, with one slider" "$(press two.html 1)" "2; no table; ; specular = 0.25  shininess = 9; true; 1; 1; 1; 1"
     same "differences, in the grid as well" "$(differ two.html)" "none none none none; block block block brightness(8)"
