@@ -86,7 +86,7 @@ return {
       parts.ball.bump = glint.pattern(function(p) return 0.1 * glint.sin(9 * p.x) end)
     end },
   { name = "opacity", functions = { "glint_tile_find_holes" }, call = function(_, parts) parts.ball.opacity = 0 end },
-  { name = "lens", part = "LENS", functions = { "camera_lens" },
+  { name = "lens", part = "LENS", functions = { "camera_lens", "through_lens" },
     call = function(_, _, scene) scene.camera.aperture = 0.5 end },
   { name = "shutter", file = "png", functions = { "^glint_plan_create_exposed$", "^glint_shutter_desc$" },
     call = function(_, _, scene) scene.camera.shutter, scene.camera.shutter_times = 0.5, 2 end,

@@ -35,7 +35,7 @@ static void R(cast_rays)(const glint_cast_args *args)
     const glint_geometry_table *geometry = args->geometry;
     _Alignas(64) float local[3][GLINT_GROUP];
     R(ray_group) rays;
-    if (geometry->nodes && args->camera && !args->camera->lens) {
+    if (geometry->nodes && R(is_beam)(args->camera)) {
         R(cast_parallel)(args);
     } else if (geometry->nodes && geometry->prim_count > GLINT_FEW) {
         R(cast_many_rays)(args);

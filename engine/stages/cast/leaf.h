@@ -348,4 +348,54 @@ INNER void R(cast_triangles)(R(tile_cast) * tile, const bool gathered, R(cast_le
         R(decide_pairs)(tile, leaf);
 }
 
+// ---- Rays that start on a lens ----
+
+/// Loads the corners. Lanes without a triangle are unchanged.
+static void R(load_lens_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_leaf) * leaf, leaf_through_lens *out)
+{
+    const glint_cast_args *args = tile->args;
+    R(load_leaf)(args, mask, leaf);
+    show_through_lens(&leaf->shown, &tile->view, &tile->lens->seen, GLINT_REAL == 32, out);
+}
+
+/// Finds the rays that may hit the triangle in a slot.
+static void R(cast_lens_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, const leaf_through_lens *shown,
+                                  const node_on_screen *seen, int slot)
+{
+    const R(tile_lens) *lens = tile->lens;
+    const screen_cells cells = seen->cells[slot];
+    const float near = seen->near[slot];
+    const unsigned columns = bit_range(first_column(cells), last_column(cells));
+    for (int y = first_row(cells); y <= last_row(cells); y++)
+        for (unsigned bits = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, near, columns); bits;
+             bits &= bits - 1) {
+            const int x = __builtin_ctz(bits);
+            const uint32_t g = (uint32_t)(y * tile->across + x);
+            unsigned lanes = 0;
+            for (int i = 0; i < GLINT_GROUP; i += VF) {
+                const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[g] + i)));
+                if (open)
+                    lanes |= (open & hits_through_lens(shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i),
+                                                       f_load(lens->across[0] + i), f_load(lens->across[1] + i)))
+                             << i;
+            }
+            if (lanes)
+                R(add_own_pairs)(tile, leaf, slot, g, lanes);
+        }
+}
+
+/// Casts the triangles in the slots of `mask`, nearest first.
+static void R(cast_lens_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
+                                   const node_on_screen *seen, unsigned mask)
+{
+    leaf_through_lens shown;
+    int order[GLINT_NODE_WIDTH];
+    const int count = sort_slots(mask, seen->near, order);
+    leaf->node = node;
+    R(load_lens_leaf)(tile, mask, leaf, &shown);
+    for (int i = 0; i < count; i++)
+        R(cast_lens_triangle)(tile, leaf, &shown, seen, order[i]);
+    R(decide_own_pairs)(tile, leaf);
+}
+
 #endif

@@ -1,7 +1,7 @@
 // cast_rays: the nearest hit of rays with any origins. In small scenes, groups of rays are tested against all
 // primitives. Otherwise the rays of a group traverse the index together while they are coherent (together.h), and
-// then each on its own. The rays of a tile of an orthographic camera without a lens traverse the index as one
-// beam (parallel.h). Contract: stages.h.
+// then each on its own. The rays of a tile of an orthographic camera, or of a camera with a lens, traverse the index
+// as one beam (parallel.h). Contract: stages.h.
 #ifndef GLINT_CAST_RAYS_H
 #define GLINT_CAST_RAYS_H
 
@@ -172,6 +172,14 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     while ((node = next_on_ray(&walk, R(reach_in_index)(args, *t), &prims)))
         for (; prims; prims &= prims - 1)
             R(cast_on_group)(args, g, rays, node->child[__builtin_ctz(prims)] & ~GLINT_NODE_PRIM);
+}
+
+#define LENS_BEAM 8 ///< if radius / focus distance of the lens is above this, the rays of a tile are not coherent
+
+/// Returns whether the rays traverse the index as one beam.
+static inline bool R(is_beam)(const glint_camera_args *camera)
+{
+    return camera && !(camera->lens && camera->lens->radius * camera->lens->per_focus > LENS_BEAM);
 }
 
 /// Prepares a group's rays for filter and traversal. local: memory for the origins of the rays.

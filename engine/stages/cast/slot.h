@@ -29,13 +29,16 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
     for (; groups; groups &= groups - 1) {
         const R(tile_group) at = R(lowest_group)(tile, gathered, groups);
         unsigned lanes = 0;
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            const vf s = f_load(at.s + i), t = f_load(at.t + i);
-            unsigned near = R(lanes_in_front)(tile, &at, i, depth) & near_shape(&shape, s, -t);
-            if (rod.is)
-                near &= near_rod(&rod, s, -t);
-            lanes |= near << i;
-        }
+        if (!gathered && GLINT_WITH_LENS && tile->lens)
+            lanes = R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, at.x, at.y);
+        else
+            for (int i = 0; i < GLINT_GROUP; i += VF) {
+                const vf s = f_load(at.s + i), t = f_load(at.t + i);
+                unsigned near = R(lanes_in_front)(tile, &at, i, depth) & near_shape(&shape, s, -t);
+                if (rod.is)
+                    near &= near_rod(&rod, s, -t);
+                lanes |= near << i;
+            }
         count = R(note_near)(&at, lanes, out, count);
     }
     return count;
@@ -103,7 +106,7 @@ INNER void R(decide_ball_of_parallels)(const glint_cast_args *args, uint32_t id,
     }
 }
 
-/// Casts a sphere.
+/// Casts a sphere, for rays that do not start on a lens.
 INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                         int slot)
 {
@@ -124,9 +127,9 @@ INNER void R(cast_ball)(R(tile_cast) * tile, const bool gathered, const glint_no
     }
 }
 
-// ---- Other primitives ----
+// ---- Other primitives, and spheres through a lens ----
 
-/// Casts any primitive except a sphere or a triangle.
+/// Casts any primitive except a triangle.
 INNER void R(cast_other)(R(tile_cast) * tile, const bool gathered, const glint_node *node, const node_on_screen *seen,
                          int slot)
 {
@@ -152,7 +155,7 @@ INNER void R(cast_slot)(R(tile_cast) * tile, const bool gathered, const glint_no
                         int slot)
 {
     const uint32_t kind = tile->args->geometry->prims[node->child[slot] & ~GLINT_NODE_PRIM].kind;
-    if (kind == GLINT_PRIM_SPHERE)
+    if (kind == GLINT_PRIM_SPHERE && (gathered || !tile->lens))
         R(cast_ball)(tile, gathered, node, seen, slot);
     else
         R(cast_other)(tile, gathered, node, seen, slot);

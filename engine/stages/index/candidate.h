@@ -16,6 +16,13 @@
 #define GLINT_FIRST_CANDIDATES 24 ///< maximum number of first candidates: the primitives of one node, and some planes
 #define GLINT_PIXEL_CELL 2 ///< side of a cell in pixels, for gathered pixels
 
+/// The lens that a tile's rays start on.
+typedef struct R(tile_lens) {
+    lens_on_screen seen;
+    _Alignas(64) float across[2][GLINT_GROUP]; ///< the point on the lens where each lane's ray starts, in screen
+        ///< units at k = 1
+} R(tile_lens);
+
 #define PIXEL_ROWS (GLINT_TILE_HEIGHT / GLINT_PIXEL_CELL)
 
 /// Groups whose pixels can lie anywhere in a tile.
@@ -36,7 +43,9 @@ typedef struct R(tile_cast) {
     screen_view view; ///< the screen; its cells are the groups
     int across, down;
     bool scaled; ///< true: the arrays below are filled
-    bool parallel; ///< true: the rays do not start at one eye: they are parallel, and are read from arrays
+    bool parallel; ///< true: the rays do not start at one eye: they are parallel or start on a lens, and are read
+        ///< from arrays
+    const R(tile_lens) * lens; ///< NULL: no lens
     bool deep; ///< true: there are candidates in sight beyond the first ones, so that it pays to test which
         ///< candidates hide others
     R(pixel_groups) * pixels; ///< NULL: each group is a block of 4 x 4 pixels, and the cells are the groups
@@ -114,11 +123,12 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     finish_screen(view);
 }
 
-/// Returns whether a ray from the eye can hit a plane, by the directions of the corner rays. Always true for other
-/// unbounded primitives.
+/// Returns whether a ray from the eye, or from the lens around it, can hit a plane, by the directions of the corner
+/// rays. Always true for other unbounded primitives.
 static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_view *view, const glint_prim *prim)
 {
-    double e[3], away = 0;
+    const double aside = camera->lens ? camera->lens->radius : 0, bend = aside > 0 ? aside * camera->lens->per_focus : 0;
+    double e[3], away = aside;
     if (prim->kind != GLINT_PRIM_PLANE)
         return true;
     for (int k = 0; k < 3; k++) {
@@ -126,17 +136,17 @@ static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_
         away = fmax(away, fabs(e[k]));
     }
     const double height = DOT(prim->normal, e);
-    if (!(fabs(height) > (GLINT_REAL == 64 ? 1e-12 : 1e-5) * away))
+    if (!(fabs(height) > 1.000001 * aside + (GLINT_REAL == 64 ? 1e-12 : 1e-5) * away))
         return true;
     for (int corner = 0; corner < 4; corner++) {
         const double s = corner & 1 ? view->last[0] : view->first[0];
         const double t = -(corner & 2 ? view->last[1] : view->first[1]);
-        double d[3], size = 0;
+        double d[3], size = bend;
         for (int k = 0; k < 3; k++) {
             d[k] = (camera->forward[k] + s * camera->right[k]) + t * camera->up[k];
             size += fabs(d[k]);
         }
-        if (!(DOT(prim->normal, d) * (height > 0 ? 1 : -1) > 1e-5 * size))
+        if (!(DOT(prim->normal, d) * (height > 0 ? 1 : -1) > 1.000001 * bend + 1e-5 * size))
             return true;
     }
     return false;
@@ -417,6 +427,7 @@ static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;
     tile->scaled = tile->deep = tile->parallel = false;
+    tile->lens = NULL;
     tile->pixels = NULL;
     R(aim_screen)(args->camera, args->geometry, &tile->view);
     tile->rr = (float)DOT(args->camera->right, args->camera->right);
@@ -433,6 +444,25 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
     for (int y = 0; y < tile->down; y++)
         for (int x = 0; x < SCREEN_ACROSS; x++)
             tile->far[y][x] = x < tile->across ? HUGE_VALF : -HUGE_VALF;
+}
+
+/// Returns the lanes of a group whose rays may hit a shape before their current hits. The test uses the distance
+/// between the lens rays and the eye's rays at the depth of the shape's middle. The shape's box begins at `near`.
+static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const shape_on_screen *shape, float middle,
+                                             float near, int x, int y)
+{
+    const R(tile_lens) *lens = tile->lens;
+    const vf share = f_set(1 - middle * lens->seen.per_focus), k = f_set(shape->k);
+    unsigned lanes = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
+        if (!open)
+            continue;
+        const vf u = f_load(tile->s[x] + i) * k + f_load(lens->across[0] + i) * share;
+        const vf v = f_load(lens->across[1] + i) * share - f_load(tile->t[y] + i) * k;
+        lanes |= (open & shape_at(shape, u, v)) << i;
+    }
+    return lanes;
 }
 
 #endif

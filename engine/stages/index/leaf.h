@@ -156,4 +156,73 @@ static inline unsigned between_edges(const leaf_on_screen *leaf, int slot, vf u,
     return ~fm_bits(f_lt(f_min(f_min(e[0], e[1]), e[2]), f_set(0))) & ((1u << VF) - 1);
 }
 
+// ---- Rays that start on a lens ----
+
+/// The triangles of a node. At the depth of corner j, a ray passes at x = a - (u k + l c) from it, and likewise y,
+/// where u is the ray's screen position and l its origin on the lens. It hits the triangle if all three x_p y_q - x_q
+/// y_p have one sign.
+typedef struct leaf_through_lens {
+    _Alignas(64) float a[3][GLINT_NODE_WIDTH], b[3][GLINT_NODE_WIDTH], k[3][GLINT_NODE_WIDTH], c[3][GLINT_NODE_WIDTH];
+    _Alignas(64) float doubt[GLINT_NODE_WIDTH]; ///< bound of the rounding error of such a difference for rays that hit
+        ///< the triangle
+} leaf_through_lens;
+
+static inline vf reach_of_three(const vf v[3])
+{
+    return f_max(f_max(v[0], v[1]), v[2]) - f_min(f_min(v[0], v[1]), v[2]);
+}
+
+/// Returns the maximum distance between a corner and a ray that hits the triangle, along axis j; at: the corners'
+/// coordinates.
+static inline vf width_through_lens(const leaf_lanes *lanes, const vf at[3], const screen_view *view,
+                                    const lens_on_screen *lens, int j)
+{
+    const float place = larger(fabsf(view->first[j]), fabsf(view->last[j])) + 2;
+    return reach_of_three(at) + f_set(place) * reach_of_three(lanes->k) +
+           f_set(lens->reach[j] * lens->per_focus) * reach_of_three(lanes->w);
+}
+
+/// Computes the triangles for rays from a lens. `corners`: as in leaf_on_screen.
+static void show_through_lens(const leaf_on_screen *corners, const screen_view *view, const lens_on_screen *lens,
+                              bool is_float, leaf_through_lens *out)
+{
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        const leaf_lanes at = place_leaf(corners, view, i);
+        vf deepest = f_set(0), off[2], wide[2];
+        for (int j = 0; j < 3; j++) {
+            const vf focus_ratio = at.w[j] * f_set(lens->per_focus);
+            f_store(out->a[j] + i, at.a[j]);
+            f_store(out->b[j] + i, at.b[j]);
+            f_store(out->k[j] + i, at.k[j]);
+            f_store(out->c[j] + i, f_set(1) - focus_ratio);
+            deepest = f_max(deepest, f_abs(focus_ratio));
+        }
+        const vf slack = slack_of_leaf(&at, view, is_float);
+        for (int j = 0; j < 2; j++) { // the rounding error of l c, including the error of c
+            wide[j] = width_through_lens(&at, j ? at.b : at.a, view, lens, j);
+            off[j] = slack * f_set(2 / view->unit[j]) + f_set(0x1p-20f * lens->reach[j]) * (f_set(1) + deepest);
+        }
+        const vf doubt = f_set(3) * (off[0] * (wide[1] + off[1]) + off[1] * (wide[0] + off[0])) +
+                         f_set(0x1p-20f) * (wide[0] * wide[1]) + f_set(16 * FLT_MIN);
+        f_store(out->doubt + i, doubt);
+    }
+}
+
+/// Returns the lanes whose rays, at positions u, v, start at (across, down) on the lens and may hit the triangle in a
+/// slot.
+INNER unsigned hits_through_lens(const leaf_through_lens *leaf, int slot, vf u, vf v, vf across, vf down)
+{
+    vf x[3], y[3], e[3];
+    for (int j = 0; j < 3; j++) {
+        const vf k = f_set(leaf->k[j][slot]), c = f_set(leaf->c[j][slot]);
+        x[j] = f_set(leaf->a[j][slot]) - (u * k + across * c);
+        y[j] = f_set(leaf->b[j][slot]) - (v * k + down * c);
+    }
+    for (int j = 0; j < 3; j++)
+        e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
+    const fm under = f_lt(f_min(f_min(e[0], e[1]), e[2]), f_set(-leaf->doubt[slot]));
+    const fm over = f_lt(f_set(leaf->doubt[slot]), f_max(f_max(e[0], e[1]), e[2]));
+    return ~fm_bits(fm_and(under, over)) & ((1u << VF) - 1);
+}
+
 #endif

@@ -90,8 +90,24 @@ static inline void project_boxes(vf low, vf high, vf nearest, vf farthest, vf st
     *most = f_select(ahead, f_max(high * near, highest), f_select(left, highest, f_set(HUGE_VALF)));
 }
 
+/// Rays that start on a lens around the eye. At depth w, they are at most `reach` |1 - per_focus w| away from the
+/// eye's rays, along each axis, in screen units at k = 1.
+typedef struct lens_on_screen {
+    float reach[2], per_focus;
+} lens_on_screen;
+
+/// Returns a bound of |1 - per_focus w| over k, including rounding.
+INNER vf lens_share(const lens_on_screen *lens, vf w, vf per_k)
+{
+    const vf focus_ratio = w * f_set(lens->per_focus);
+    return (f_abs(f_set(1) - focus_ratio) + f_set(1e-6f) * (f_set(1) + f_abs(focus_ratio))) * f_abs(per_k);
+}
+
 /// Returns the boxes that may be hit before `far`. A box as wide as float's range gives NaN, and is in every cell.
-INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const bool parallel, node_on_screen *out)
+/// `lens`: NULL, a constant: all rays start at the eye. Within a box, the offset by a lens is between the offsets at
+/// both ends of the box.
+INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const bool parallel,
+                          const lens_on_screen *lens, node_on_screen *out)
 {
     unsigned inside = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
@@ -104,12 +120,27 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
         }
         const vf nearest = f_set(view->base) + low[2] * f_set(view->inverse);
         const vf farthest = f_set(view->base) + high[2] * f_set(view->inverse);
+        vf moment = f_set(0), around = f_set(0);
+        if (lens) {
+            const fm ahead = f_lt(f_set(0), nearest);
+            moment = f_select(
+                ahead,
+                f_max(lens_share(lens, low[2], f_set(1) / nearest), lens_share(lens, high[2], f_set(1) / farthest)),
+                f_set(0));
+            around = f_select(ahead, f_set(0),
+                              f_max(lens_share(lens, low[2], f_set(1)), lens_share(lens, high[2], f_set(1))));
+        }
         vi cells = i_set(0);
         fm away = fm_or(f_lt(f_set(view->far), low[2]), f_lt(farthest, f_set(0)));
         f_store(out->near + i, f_max(low[2], f_set(-FLT_MAX)));
         for (int j = 1; j >= 0; j--) {
             const vf start = f_set(view->first[j]), end = f_set(view->last[j]);
-            const vf margin = f_set(view->margin);
+            vf margin = f_set(view->margin);
+            if (lens) {
+                margin = margin + f_set(lens->reach[j]) * moment;
+                low[j] = low[j] - f_set(lens->reach[j]) * around;
+                high[j] = high[j] + f_set(lens->reach[j]) * around;
+            }
             if (!parallel)
                 project_boxes(low[j], high[j], nearest, farthest, start - margin, end + margin, &low[j], &high[j]);
             least = low[j] - margin;
@@ -127,8 +158,14 @@ INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const
 static unsigned boxes_on_screen(const glint_node *node, const screen_view *view, node_on_screen *out)
 {
     if (view->inverse == 0 && view->base == 1)
-        return find_boxes(node, view, true, out);
-    return find_boxes(node, view, false, out);
+        return find_boxes(node, view, true, NULL, out);
+    return find_boxes(node, view, false, NULL, out);
+}
+
+static unsigned boxes_through_lens(const glint_node *node, const screen_view *view, const lens_on_screen *lens,
+                                   node_on_screen *out)
+{
+    return find_boxes(node, view, false, lens, out);
 }
 
 /// A node that is still to be opened, and its position on the screen.
@@ -263,12 +300,18 @@ static inline shape_on_screen shape_of(const glint_node *node, const node_on_scr
     return out;
 }
 
-/// Returns the lanes whose rays, at screen positions u, v, may hit the shape.
-static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
+/// Returns the lanes whose rays may hit the shape; u, v: their screen positions times k, at the depth of its middle.
+static inline unsigned shape_at(const shape_on_screen *shape, vf u, vf v)
 {
-    const vf across = u * f_set(shape->k) - f_set(shape->middle[0]), down = v * f_set(shape->k) - f_set(shape->middle[1]);
+    const vf across = u - f_set(shape->middle[0]), down = v - f_set(shape->middle[1]);
     const vf distance2 = f_set(shape->weight[0]) * (across * across) + f_set(shape->weight[1]) * (down * down);
     return ~fm_bits(f_lt(f_set(shape->reach2), distance2)) & ((1u << VF) - 1);
+}
+
+/// Does the same for rays at screen positions u, v.
+static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
+{
+    return shape_at(shape, u * f_set(shape->k), v * f_set(shape->k));
 }
 
 /// A solid that is longer than wide, bounded by a cylinder around its axis. Let d be the direction of a ray, e the

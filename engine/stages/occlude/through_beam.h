@@ -11,6 +11,7 @@
 #include "engine/stages/occlude/beam_points.h"
 #include "engine/stages/occlude/blocked.h"
 #include "engine/stages/occlude/grid.h"
+#include "engine/stages/occlude/near.h"
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/simd/real.h"
 
@@ -222,10 +223,12 @@ static void R(occlude_point)(const glint_occlude_args *args)
         R(occlude_many)(&tile, &group);
         return;
     }
+    uint32_t near[GLINT_TILE_GROUPS];
+    R(find_near)(&tile, &group, near);
     for (uint32_t g = 0; g < args->group_count; g++) {
         R(begin_group)(g, &group);
-        for (int n = 0; n < tile.count && out[g]; n++)
-            out[g] &= (uint16_t)~R(blocked_by)(&tile, tile.occluders[n], &group, out[g]);
+        for (unsigned bits = near[g]; bits && out[g]; bits &= bits - 1)
+            out[g] &= (uint16_t)~R(blocked_by)(&tile, tile.occluders[__builtin_ctz(bits)], &group, out[g]);
     }
 }
 
