@@ -54,7 +54,8 @@ LINUX  := $(findstring linux,$(TARGET))
 MACOS  := $(findstring darwin,$(TARGET))
 LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
 LINK_COMMAND := $(if $(MACOS),,-Wl$(comma)-E)
-LINK_MODULE  := $(if $(MACOS),-bundle -undefined dynamic_lookup,-shared)
+# nodelete: Lua unloads a module at its end, but libraries of the module such as pixman never free their memory.
+LINK_MODULE  := $(if $(MACOS),-bundle -undefined dynamic_lookup,-shared -Wl$(comma)-z$(comma)nodelete)
 LINK_SHARED   = $(if $(MACOS),-dynamiclib -Wl$(comma)-install_name$(comma)$(libdir)/$(SONAME) -Wl$(comma)-exported_symbols_list,-shared \
                   -Wl$(comma)-soname$(comma)$(SONAME) $(if $(LINUX),-Wl$(comma)-z$(comma)defs) -Wl$(comma)--version-script)
 LIB_DL       := $(if $(LINUX),-ldl)
