@@ -2,6 +2,7 @@
 #include "engine/overlay/layout.h"
 #include "engine/overlay/marks.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,9 +60,9 @@ static void widen(double range[2], bool is_log, bool has_space)
 {
     const double low = range[0], high = range[1];
     if (is_log) {
-        const double factor = low == high ? 2 : has_space ? glint_pow(high / low, SPACE) : 1;
-        range[0] = low / factor;
-        range[1] = high * factor;
+        const double factor = low == high ? 2 : has_space ? glint_pow(high, SPACE) / glint_pow(low, SPACE) : 1;
+        range[0] = fmax(low / factor, DBL_MIN);
+        range[1] = fmin(high * factor, DBL_MAX);
         return;
     }
     const double space = low == high ? fmax(fabs(low) / 2, 0.5) : has_space ? SPACE * high - SPACE * low : 0;

@@ -1,5 +1,6 @@
 #include "engine/overlay/marks.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,8 +24,11 @@ static double round_step(double most, int *decimals)
 
 double glint_scale_share(const glint_scale *scale, double value)
 {
-    if (scale->is_log)
-        return glint_log(value / scale->first) / glint_log(scale->last / scale->first);
+    const double ratio = scale->last / scale->first;
+    if (scale->is_log && ratio > 0 && ratio <= DBL_MAX)
+        return glint_log(value / scale->first) / glint_log(ratio);
+    if (scale->is_log) // the ratio of a range of more than 308 powers of ten overflows
+        return (glint_log(value) - glint_log(scale->first)) / (glint_log(scale->last) - glint_log(scale->first));
     return (value - scale->first) / (scale->last - scale->first);
 }
 
@@ -74,7 +78,7 @@ static void find_powers(glint_marks *marks, const glint_typeface *typeface, cons
     static const double factors[] = { 1, 2, 5 };
     const double low = fmin(scale->first, scale->last), high = fmax(scale->first, scale->last), ten = glint_log(10);
     const int first = (int)ceil(glint_log(low) / ten - 1e-9), last = (int)floor(glint_log(high) / ten + 1e-9);
-    const double decades = glint_log(high / low) / ten;
+    const double decades = (glint_log(high) - glint_log(low)) / ten;
     const int factor_count = last - first < 2 ? 3 : 1;
     int step = (last - first) / (GLINT_OVERLAY_TICKS_MAX - 1) + 1;
     marks->count = 0;
