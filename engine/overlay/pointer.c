@@ -320,7 +320,7 @@ static double add_head(glint_strokes *strokes, const glint_layout *layout, const
         strokes->head[2][c] = base - half * across;
     }
     strokes->has_head = true;
-    return fmax(1 - (size - strokes->half) / length, p->range[0]);
+    return fmin(fmax(1 - (size - strokes->half) / length, p->range[0]), p->range[1]);
 }
 
 /// Draws the dots of a polyline, except those that are hidden and left out.
