@@ -45,7 +45,7 @@ return glint.animation { scene = scene, frames = 1, width = 320, height = 240, f
 LUA
 font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf # rsvg-convert has no bitmap font
 [ -f $font ] && "$glint" --version --verbose | grep -q FreeType && export GLINT_FONT=$font
-compare() { "${LUA:-lua5.4}" "$root/tests/command/vectors.lua" "$@"; }
+compare() { LD_PRELOAD=${PRELOAD:-} "${LUA:-lua5.4}" "$root/tests/command/vectors.lua" "$@"; }
 
 "$glint" -q figure.lua -o a.png && "$glint" -q figure.lua -o plain.png -D marks=false || exit 1
 "$glint" -q figure.lua -o a.svg && "$glint" -q figure.lua -o b.svg -t 1 || exit 1
