@@ -10,8 +10,6 @@
 #define PI 0x1.921fb54442d18p+1
 #define SAMPLES_MAX 0x1p27 ///< most samples of all lights together, over all sets
 
-/// Larger strengths are white in any picture. Products of two strengths below this limit stay finite.
-
 static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
 /// Sets up the highlight of Phong or Blinn-Phong.

@@ -3,18 +3,29 @@ package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 
 local tally = { passed = 0, failed = 0 }
 
--- Counts a check. A failed check prints the formatted message and the check's line.
-function tally.check(ok, format, ...)
+-- Counts a check. A failed check prints the formatted message and the line of the caller's caller.
+local function count(ok, format, ...)
   if ok then
     tally.passed = tally.passed + 1
   else
     tally.failed = tally.failed + 1
-    print(("not ok - %s (line %d)"):format(format:format(...), debug.getinfo(2, "l").currentline))
+    print(("not ok - %s (line %d)"):format(format:format(...), debug.getinfo(3, "l").currentline))
   end
+end
+
+-- Counts a check. A failed check prints the formatted message and the check's line.
+function tally.check(ok, format, ...)
+  count(ok, format, ...)
 end
 
 function tally.near(got, want, tolerance, name)
   tally.check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
+end
+
+-- Checks that a call raises an error whose message contains `want`.
+function tally.raises(want, call, ...)
+  local good, message = pcall(call, ...)
+  count(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
 end
 
 -- Runs the functions of a table in the order of their names. An error counts as a failed check.

@@ -372,10 +372,7 @@ do
   check(sums == 256, "passes sum to the picture")
 end
 
-local function raises(message, f, ...)
-  local ok, got = pcall(f, ...)
-  check(not ok and tostring(got):find(message, 1, true), "%s expected, got %s", message, tostring(got))
-end
+local raises = tally.raises
 for _, ior in ipairs { 0, -1 } do raises("ior: number > 0 expected, got " .. ior, glint.material, { ior = ior }) end
 raises("material.ior: finite number expected, got nan", glint.material, { ior = 0 / 0 })
 raises("material.mirror", glint.material, { mirror = -1 })

@@ -4,10 +4,7 @@ local check = tally.check
 local glint = require "glint"
 local NAN <const> = 0 / 0
 
-local function raises(want, f, ...)
-  local good, message = pcall(f, ...)
-  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local function chart_of(series, fields)
   local t = { series = { series } }

@@ -8,10 +8,7 @@ local vec = glint.vector
 local WIDTH, HEIGHT = 240, 135
 local CAMERA = glint.camera { eye = { 1, 2, 9 }, at = { 0, 0, 0 }, fov = 40 }
 
-local function raises(want, f, ...)
-  local good, message = pcall(f, ...)
-  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local function near(a, b, limit) return (a - b):length() <= limit end
 
@@ -168,7 +165,7 @@ function tests.paths_by_snell()
   end
 end
 
--- Total reflection, mirrors, the two rays of Fresnel glass, and what ends a path: its depth, its reach, a weak ray.
+-- Total reflection, mirrors, the two rays of Fresnel glass, and the three ends of a path: its depth, its reach, a weak ray.
 function tests.paths_by_surfaces()
   local glass = glint.material { transmission = 1, ior = 1.5 }
   local slab = glint.box { min = { -9, -1, -9 }, max = { 9, 0, 9 }, material = glass }

@@ -7,10 +7,7 @@ local WIDTH <const>, HEIGHT <const> = 40, 30
 local PASSES <const> = { "beauty", "diffuse", "depth", "normal" }
 local EYE <const>, LAMP <const> = { 1, 3, 8 }, { 1.5, 6, -3 }
 
-local function raises(want, call, ...)
-  local good, message = pcall(call, ...)
-  check(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 -- A scene with an optional `pane` between the eye, the light, the floor and a ball.
 local function scene_of(pane, fields)

@@ -31,10 +31,7 @@ end
 
 local function is(got, want, what) check(got == want, "%s: <%s> expected, got <%s>", what or "atoms", want, got) end
 
-local function raises(want, f, ...)
-  local ok, message = pcall(f, ...)
-  check(not ok and tostring(message):find(want, 1, true), "<%s> expected, got <%s>", want, tostring(message))
-end
+local raises = tally.raises
 
 -- Calls f and returns the warnings, as a list.
 local function warnings_of(f)

@@ -11,10 +11,7 @@ local tests = {}
 local ROUNDING <const> = 2 ^ -23 -- rounding error of a float32 near 1
 local LOSS <const> = 2 ^ -20 -- largest error: the light that dropped weak rays may carry
 
-local function raises(message, f, ...)
-  local ok, got = pcall(f, ...)
-  check(not ok and tostring(got):find(message, 1, true), "%s: got %s", message, tostring(got))
-end
+local raises = tally.raises
 
 -- Returns the linear value of the 8-bit pixel value k.
 local function decoded(k)

@@ -7,10 +7,7 @@ local vec = glint.vector
 
 local WIDTH, HEIGHT = 240, 160
 
-local function raises(want, f, ...)
-  local good, message = pcall(f, ...)
-  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local CAMERAS = {
   perspective = glint.camera { eye = { 3, 2, 8 }, at = { 0.3, 0.2, 0 }, fov = 40 },

@@ -276,10 +276,7 @@ do -- passes sum to the picture
   check(sums == 256, "passes sum to the picture: %d of 256", sums)
 end
 
-local function raises(message, f, ...)
-  local ok, got = pcall(f, ...)
-  check(not ok and tostring(got):find(message, 1, true), "%s expected, got %s", message, tostring(got))
-end
+local raises = tally.raises
 local scene = glint.scene {}
 local function set(value) scene.indirect = value end
 check(scene.indirect == nil, "off by default")

@@ -8,10 +8,7 @@ local SUM = 2 ^ -21 -- allowed difference between beauty and the sum of all pass
 local LOST = 2 ^ -20 -- linear light in weak rays that are not traced, see max_depth in the manual
 local W, H = 48, 40
 
-local function raises(want, f, ...)
-  local good, message = pcall(f, ...)
-  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local function random(lo, hi) return lo + (hi - lo) * math.random() end
 local function one_of(...) return (select(math.random(select("#", ...)), ...)) end

@@ -8,10 +8,7 @@ local ROUNDING = 2 ^ -22
 local SAMPLES = 16384
 local NOISE = 0.002 -- allowed error for this many samples: half of the error of random sampling
 
-local function raises(want, f, ...)
-  local good, message = pcall(f, ...)
-  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local matt = glint.material { diffuse = 1 }
 local function floor(material) return glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = material or matt } end

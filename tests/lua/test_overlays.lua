@@ -4,10 +4,7 @@ local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 
-local function raises(want, f, ...)
-  local good, message = pcall(f, ...)
-  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local function bar(fields)
   local t = { map = "magma", low = 0, high = 1 }

@@ -6,10 +6,7 @@ local glint = require "glint"
 local ROUNDING <const> = 1e-14
 local tests = {}
 
-local function raises(want, call, ...)
-  local good, message = pcall(call, ...)
-  check(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local function ring(fields)
   local given = { center = { 0, 0, 0 }, major = 2, minor = 0.5 }

@@ -7,10 +7,7 @@ local BUILD = os.getenv "BUILD" or "build"
 
 local ROUNDING <const> = 2e-6 -- allowed error of light near 1: float32 rounding and dropped weak rays
 
-local function raises(want, call, ...)
-  local good, message = pcall(call, ...)
-  check(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local function camera(fields)
   local all = { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, fov = 40 }

@@ -3,10 +3,7 @@ local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
 
-local function raises(want, call, ...)
-  local good, message = pcall(call, ...)
-  check(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
-end
+local raises = tally.raises
 
 local UV <const> = glint.pattern(function(_, s) return { s.uv.u, s.uv.v, 0 } end)
 local PASSES <const> = { width = 40, height = 30, passes = { "beauty", "albedo", "normal" } }

@@ -4,15 +4,7 @@
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
 
-/// Larger strengths are white in any film. The product of two strengths below this limit is finite.
-
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
-
-static void bounded(double out[3], const double color[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = fmin(color[c], GLINT_STRENGTH_MAX);
-}
 
 /// Returns the mirror of a material: if it was never set, it follows `fresnel`.
 static const double *mirror_of(const glint_material_desc *desc)
@@ -27,9 +19,9 @@ static void bounce_material_init(glint_bounce_material *out, const glint_plan *p
     *out = (glint_bounce_material) { .ior = desc->ior, .fresnel = desc->fresnel };
     out->clear = plan->translucent ? plan->translucent[index].clear : 0;
     out->clears = plan->translucent && plan->translucent[index].blends;
-    bounded(out->mirror, mirror_of(desc));
-    bounded(out->transmission, desc->transmission);
-    bounded(out->absorption, desc->absorption);
+    glint_plan_bounded(out->mirror, mirror_of(desc), 1);
+    glint_plan_bounded(out->transmission, desc->transmission, 1);
+    glint_plan_bounded(out->absorption, desc->absorption, 1);
     for (int c = 0; c < 3; c++) { // the same limits apply to programs' results
         out->mirror[c] = desc->program.mirror ? GLINT_REFLECTANCE_MAX : out->mirror[c];
         out->transmission[c] = desc->program.transmission ? GLINT_REFLECTANCE_MAX : out->transmission[c];

@@ -7,8 +7,6 @@
 
 #include <stdlib.h>
 
-/// The limit for numbers of materials; see shading.c.
-
 // ---- A material's programs ----
 
 #define PROGRAM(field, member) [GLINT_FIELD_##field] = offsetof(glint_material_desc, program.member)

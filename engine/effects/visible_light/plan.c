@@ -10,18 +10,14 @@
 bool glint_light_shows(const glint_light_desc *desc, double shown[3])
 {
     const double area = glint_light_sample_area(desc), *a = desc->attenuation;
-    bool any = false;
     if (!desc->visible || !(area > 0))
         return false;
     const double distance = desc->kind == GLINT_LIGHT_POLYGON ? sqrt(area / PI) : desc->radius;
     const double factor = desc->has_radiance
                               ? PI * desc->radiance
                               : desc->intensity / (a[0] + (a[1] * distance + a[2] * (distance * distance)));
-    for (int c = 0; c < 3; c++) {
-        shown[c] = desc->color[c] == 0 ? 0 : fmin(desc->color[c] * factor, GLINT_STRENGTH_MAX);
-        any = any || shown[c] > 0;
-    }
-    return any;
+    glint_plan_bounded(shown, desc->color, factor);
+    return shown[0] > 0 || shown[1] > 0 || shown[2] > 0;
 }
 
 /// Adds the edges of a polygon to the plan's list.
