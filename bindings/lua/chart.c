@@ -1,5 +1,6 @@
 // The series of glint.chart: tables with label, x, y, color, width and dots; charts as pictures of their own.
 #include "bindings/lua/chart.h"
+#include "bindings/run/run.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -244,26 +245,6 @@ void glintL_chart_push(lua_State *L, const void *desc)
 
 // ---- A chart as a picture ----
 
-bool glintL_push_chart_scene(lua_State *L, int index)
-{
-    const glint_overlay *chart = glintL_test_object(L, index, GLINTL_OVERLAY);
-    if (!chart || glint_overlay_get(chart)->kind != GLINT_OVERLAY_CHART)
-        return false;
-    luaL_checkstack(L, 6, "chart");
-    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
-    lua_getfield(L, -1, "glint");
-    lua_getfield(L, -1, "scene");
-    lua_createtable(L, 1, 1);
-    lua_pushvalue(L, index);
-    lua_rawseti(L, -2, 1);
-    lua_pushinteger(L, 1);
-    lua_setfield(L, -2, "background");
-    lua_call(L, 1, 1);
-    lua_replace(L, -3);
-    lua_pop(L, 1);
-    return true;
-}
-
 typedef struct save_options {
     double width, height, dpi;
 } save_options;
@@ -288,18 +269,6 @@ static glint_status draw(glint_scene *scene, const save_options *options, glint_
     return status;
 }
 
-// Gives the scene at the top of the stack a camera.
-static void add_camera(lua_State *L)
-{
-    glint_error error;
-    const glint_camera_desc desc = glint_camera_desc_default();
-    glintL_box *box = glintL_new_box(L, GLINTL_CAMERA);
-    glint_camera *camera;
-    glintL_check_status(L, "save", &error, glint_camera_create(&desc, &camera, &error));
-    box->object = camera;
-    lua_setfield(L, -2, "camera");
-}
-
 // Writes a chart: save(path, { width, height, dpi }). This is not a frame of the run.
 static int save(lua_State *L)
 {
@@ -317,7 +286,7 @@ static int save(lua_State *L)
         glintL_read_table(L, 3, "save", fields, &read, false);
     if (!glintL_push_chart_scene(L, 1))
         return luaL_typeerror(L, 1, "chart");
-    add_camera(L);
+    glintL_give_camera(L, glintL_get_run(L), 4);
     glintL_box *box = glintL_new_box(L, GLINTL_IMAGE);
     glintL_check_status(L, "save", &error, draw(glintL_check_object(L, 4, GLINTL_SCENE), &read, &image, &error));
     box->object = image;

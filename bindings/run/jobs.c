@@ -21,6 +21,26 @@ static bool push_expected(lua_State *L, int index)
     return false;
 }
 
+bool glintL_push_chart_scene(lua_State *L, int index)
+{
+    const glint_overlay *chart = glintL_test_object(L, index, GLINTL_OVERLAY);
+    if (!chart || glint_overlay_get(chart)->kind != GLINT_OVERLAY_CHART)
+        return false;
+    luaL_checkstack(L, 6, "chart");
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_getfield(L, -1, "glint");
+    lua_getfield(L, -1, "scene");
+    lua_createtable(L, 1, 1);
+    lua_pushvalue(L, index);
+    lua_rawseti(L, -2, 1);
+    lua_pushinteger(L, 1);
+    lua_setfield(L, -2, "background");
+    lua_call(L, 1, 1);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+    return true;
+}
+
 // Pushes the job for one value; false: it is not a job, and nothing is pushed. A scene or a chart becomes a still.
 static bool push_one(lua_State *L, int index)
 {

@@ -376,6 +376,8 @@ bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radi
 /// is at `index`. A chart without shapes gets any camera, without a warning. Other values and scenes without shapes are
 /// left unchanged.
 void glintL_give_camera(lua_State *L, glintL_run *run, int index);
+/// Pushes a white scene with the chart at `index`; false: it is not a chart, and nothing is pushed.
+bool glintL_push_chart_scene(lua_State *L, int index);
 void glintL_give_cameras(lua_State *L, int list, glintL_run *run); ///< gives cameras to all jobs at `list` (absolute)
 /// Prints a note about the state that a later run continues from. It is no mistake, so it is no failure under
 /// --warnings=error.

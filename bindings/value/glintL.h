@@ -246,8 +246,6 @@ glintL_box *glintL_new_box(lua_State *L, const char *type);
 void *glintL_check_object(lua_State *L, int index, const char *type);
 /// Returns the object without raising; NULL if the value is something else.
 void *glintL_test_object(lua_State *L, int index, const char *type);
-/// Pushes a white scene with the chart at `index`; false: it is not a chart, and nothing is pushed.
-bool glintL_push_chart_scene(lua_State *L, int index);
 /// Remember (weakly) the userdata on top of the stack for its object; push it again later, or nil if it is gone.
 void glintL_remember(lua_State *L, void *object);
 void glintL_push_remembered(lua_State *L, const void *object);
