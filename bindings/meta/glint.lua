@@ -827,7 +827,7 @@ function animation:run(options) end
 function glint.animation(fields) end
 
 --- A contact sheet of a sweep's frames, drawn when all of them are finished: a table of pictures, as a picture, or as a
---- page with a slider for each axis. The values of the first axis are heads above the columns, those of the second beside
+--- page with a slider for each axis. The values of the first axis are heads above the columns, the values of the second are beside
 --- the rows; all other axes make blocks.
 ---@class glint.sheet
 ---@field label? boolean|string|fun(values: table<string, any>, n: integer, pass: string): string  true: heads with the values of the axes; false: neither heads nor labels; a text under each picture, such as "n = {shininess}", which may also contain {file} and {frame}; or a function that returns this text. Default true

@@ -1,5 +1,5 @@
 /// Writes .svg. The text is in `text` elements, so that readers can select and search it; cairo's SVG has the outlines
-/// of letters only. Therefore this file needs no library except those of PNG.
+/// of letters only. Therefore this file needs only the libraries that a PNG needs.
 #include "engine/file/figure.h"
 
 #include "engine/base/status.h"

@@ -102,7 +102,7 @@ static chart make_chart(const glint_layout *layout, int x, int y)
     const glint_overlay_desc *desc = layout->desc;
     const glint_typeface *typeface = &layout->typeface;
     chart c = { .layout = layout, .line = (int)fmax(layout->em / 16, 1), .gap = (int)ceil(GAP * layout->em) };
-    int advance, names[2]; // distances from a text to what follows it
+    int advance, names[2]; // distances from a text to the next element
     glint_layout_measure(layout, desc->text, &advance);
     for (int i = 0; i < 2; i++)
         glint_layout_measure(layout, desc->titles[i], &names[i]);

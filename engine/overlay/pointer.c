@@ -25,7 +25,7 @@ static double length_of(double x, double y) { return sqrt(x * x + y * y); }
 // ---- Curves ----
 
 /// Cuts the line from `from` to `from` + `offset` at the sides of a rectangle. Returns false if it lies outside.
-/// range  in: start and end of the part to cut, 0 .. 1 along the line; out: start and end of what lies inside.
+/// range  in: start and end of the part to cut, 0 .. 1 along the line; out: start and end of the part inside.
 static bool cut_to_rect(const double from[2], const double offset[2], const double low[2], const double high[2],
                         double range[2])
 {
@@ -80,7 +80,7 @@ bool glint_pointer_is_point(const glint_overlay_desc *desc)
 }
 
 /// Cuts piece `i` of a curve at a rectangle a little larger than the picture. Returns false if it lies outside.
-/// range  in: start and end of the part to cut, 0 .. 1 along the piece; out: start and end of what lies inside.
+/// range  in: start and end of the part to cut, 0 .. 1 along the piece; out: start and end of the part inside.
 static bool cut_piece(const glint_overlays *overlays, const glint_pointer *p, int i, double range[2])
 {
     const double sides[2] = { overlays->width, overlays->height }, margin = fmax(sides[0], sides[1]) / 4;

@@ -1,6 +1,6 @@
 # shellcheck shell=bash disable=SC2034,SC2154
-# Chooses the font of the pictures that pages show: DejaVu Sans. Sets `pinned` where the font and FreeType are those of
-# Debian 12, so that text has the pixels of these pictures. Elsewhere the bitmap font is used, and pictures with text are
+# Chooses the font of the pictures that pages show: DejaVu Sans. Sets `pinned` where both the font and FreeType are
+# from Debian 12, so that text has the pixels of these pictures. Elsewhere the bitmap font is used, and pictures with text are
 # not compared. `glint` is the command.
 export GLINT_FONT=bitmap
 pinned=

@@ -34,18 +34,18 @@ steps() {
     rm -f "$out/$name"*.png
     if "$glint" "scripts/$name.lua" "$@" --quiet --force -o "$out/$name.%02d.png" 2>/dev/null >&2 &&
         "$glint" sheet "$out/$name.##.png" --columns 5 --difference 1 -o "$out/$name.png" >/dev/null 2>&1; then
-        keep "$name" "$out/$name.png"
+        keep "$name" "$out/$name.png" text
     else
         say "not ok" "$name: no picture"
     fi
 }
 
-# keep NAME FILE: compares or updates a script's picture.
+# keep NAME FILE [text]: compares or updates a script's picture. text: it has text although its script adds none.
 keep() {
     local name=$1 kept=scripts/pictures/$1.png made=$2
     if "$glint" compare "$kept" "$made" --fail 0 --warn 0 >/dev/null 2>&1; then
         say ok "$name is current"
-    elif [ ! "$pinned" ] && grep -qE 'glint\.(label|arrow|line|chart|axes|colorbar)|sweep' "scripts/$name.lua"; then
+    elif [ ! "$pinned" ] && { [ -n "${3-}" ] || grep -qE '(glint\.|[a-z]:)(label|arrow|line|chart|axes|colorbar)' "scripts/$name.lua"; }; then
         say ok "$name is not compared, because its letters are of another font"
     elif [ "$mode" = update ]; then
         cp "$made" "$kept"
