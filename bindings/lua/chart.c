@@ -1,8 +1,7 @@
 // The series of glint.chart: tables with label, x, y, color, width and dots; charts as pictures of their own.
-#include "bindings/lua/chart.h"
+#include "bindings/lua/overlay.h"
 #include "bindings/run/run.h"
 
-#include <stddef.h>
 #include <string.h>
 
 static const char CHARTS; // address used as the registry key for a table from lists of series to their charts
@@ -184,9 +183,9 @@ static void read_series(lua_State *L, int index, int owner, const char *path, vo
     lua_settop(L, top);
 }
 
-void glintL_chart_read(lua_State *L, int index, const char *path, void *desc) { read_series(L, index, index, path, desc); }
+static void read_list(lua_State *L, int index, const char *path, void *desc) { read_series(L, index, index, path, desc); }
 
-void glintL_chart_read_y(lua_State *L, int index, const char *path, void *desc)
+static void read_y(lua_State *L, int index, const char *path, void *desc)
 {
     if (!lua_istable(L, 1))
         glintL_error(L, "%s: only glint.chart { ... } takes y; assign series", path);
@@ -230,7 +229,7 @@ static void push_curve(lua_State *L, const glint_curve *curve)
     lua_setfield(L, -2, "dots");
 }
 
-void glintL_chart_push(lua_State *L, const void *desc)
+static void push_list(lua_State *L, const void *desc)
 {
     const glint_overlay_desc *d = desc;
     const glint_curve *curve;
@@ -300,8 +299,81 @@ static int save(lua_State *L)
     return lua_gettop(L) - 4;
 }
 
-int glintL_chart_push_save(lua_State *L)
+static int push_save(lua_State *L)
 {
     lua_pushcfunction(L, save);
     return 1;
 }
+
+// ---- The fields ----
+
+// The x of a chart is read with the series.
+static void read_x(lua_State *L, int index, const char *path, void *desc)
+{
+    (void)index, (void)desc;
+    if (!lua_istable(L, 1))
+        glintL_error(L, "%s: only glint.chart { ... } takes x; assign series with their own x", path);
+}
+
+// The labels of a chart are read with the series.
+static void read_labels(lua_State *L, int index, const char *path, void *desc)
+{
+    (void)desc;
+    if (!lua_istable(L, 1))
+        glintL_error(L, "%s: only glint.chart { ... } takes labels; assign series with their own label", path);
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "list of texts, one for each series");
+}
+
+static void push_nil(lua_State *L, const void *desc)
+{
+    (void)desc;
+    lua_pushnil(L);
+}
+
+#define AXIS(i, letter) \
+    static void read_title_##letter(lua_State *L, int index, const char *path, void *desc) \
+    { \
+        glintL_overlay_copy_text(L, index, path, ((desc_type *)desc)->titles[i], GLINT_CHART_TEXT_SIZE); \
+    } \
+    static void push_title_##letter(lua_State *L, const void *desc) { lua_pushstring(L, ((const desc_type *)desc)->titles[i]); } \
+    static void read_range_##letter(lua_State *L, int index, const char *path, void *desc) \
+    { \
+        glintL_overlay_read_pair(L, index, path, "{first, last}", ((desc_type *)desc)->range[i]); \
+    } \
+    static void push_range_##letter(lua_State *L, const void *desc) { glintL_overlay_push_pair(L, ((const desc_type *)desc)->range[i], #letter "_range"); } \
+    static void read_scale_##letter(lua_State *L, int index, const char *path, void *desc) \
+    { \
+        ((desc_type *)desc)->is_log_axis[i] = glintL_overlay_read_log(L, index, "chart", #letter "_scale"); \
+        (void)path; \
+    } \
+    static void push_scale_##letter(lua_State *L, const void *desc) { lua_pushstring(L, glintL_overlay_scales[((const desc_type *)desc)->is_log_axis[i]]); }
+
+AXIS(0, x)
+AXIS(1, y)
+
+static void read_extent(lua_State *L, int index, const char *path, void *desc)
+{
+    glintL_overlay_read_pair(L, index, path, "{width, height} in points", ((desc_type *)desc)->extent);
+}
+
+static void push_extent(lua_State *L, const void *desc) { glintL_overlay_push_pair(L, ((const desc_type *)desc)->extent, "extent"); }
+
+const glintL_field glintL_chart_fields[] = {
+    { .name = "series", GLINTL_CUSTOM(read_list, push_list) },
+    { .name = "x", GLINTL_CUSTOM(read_x, push_nil) },
+    { .name = "y", GLINTL_CUSTOM(read_y, push_nil) },
+    { .name = "labels", GLINTL_CUSTOM(read_labels, push_nil) },
+    { .name = "title", GLINTL_CUSTOM(glintL_overlay_read_text, glintL_overlay_push_text) },
+    { .name = "x_label", GLINTL_CUSTOM(read_title_x, push_title_x) },
+    { .name = "y_label", GLINTL_CUSTOM(read_title_y, push_title_y) },
+    { .name = "x_scale", GLINTL_CUSTOM(read_scale_x, push_scale_x) },
+    { .name = "y_scale", GLINTL_CUSTOM(read_scale_y, push_scale_y) },
+    { .name = "x_range", GLINTL_CUSTOM(read_range_x, push_range_x), .set_offset = AT(has_range[0]) },
+    { .name = "y_range", GLINTL_CUSTOM(read_range_y, push_range_y), .set_offset = AT(has_range[1]) },
+    { .name = "extent", GLINTL_CUSTOM(read_extent, push_extent), .set_offset = AT(has_extent) },
+    EVERY_OVERLAY,
+    { .name = NULL },
+};
+
+const luaL_Reg glintL_chart_methods[] = { { "save", push_save }, { NULL, NULL } };
