@@ -164,7 +164,10 @@ endif
 STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/%,$(ENGINE_SRC)))
 STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% engine/stages/program/% engine/stages/derivative/% %/shade/samples.c,$(STAGE_SRC))
 STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
-STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 f32,$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
+# FLOAT= leaves out float, for a build in less time: the reference then renders --precision float, with the same bits.
+FLOAT        ?= yes
+NO_FLOAT     := $(if $(FLOAT),,-DGLINT_NO_FLOAT)
+STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 $(FLOAT:%=f32),$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
 ENGINE_SRC   := $(filter-out $(STAGE_SRC),$(ENGINE_SRC))
 ENGINE_OBJ   := $(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
@@ -209,7 +212,8 @@ $$(BUILD)/engine/stages/%.$(1).o: engine/stages/%.c $$(BUILD)/flags | need
 	$$(Q)$$(CC) $$(COMPILE) $$(PLAIN) $$(LINES) $$(KERNEL_CFLAGS) $$(FLAGS_$(2)) -DGLINT_ISA=$(2) $(3) -MMD -MP -c $$< -o $$@
 endef
 $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$(real),$(isa),-DGLINT_REAL=$(real)))) \
-    $(eval $(call stage_rule,$(isa),$(isa))))
+    $(eval $(call stage_rule,$(isa),$(isa),$(NO_FLOAT))))
+$(KERNELS:%=$(BUILD)/engine/stages/simd/table.%.o): $(BUILD)/kernels
 # Some sources need flags of their own. objects_of returns their objects, for the archive and for the shared library.
 objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
@@ -218,7 +222,7 @@ UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addp
               transparent_shadow/transparent_shadow.c))
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
 $(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
-$(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%)
+$(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
 $(call objects_of,engine/stages/simd/select.c): $(BUILD)/kernels
 $(call objects_of,engine/text/letters.c): OWN := $(FONT_CFLAGS)
 $(call objects_of,engine/file/pdf.c): OWN := $(CAIRO_CFLAGS)
@@ -289,9 +293,9 @@ $(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
 # When flags or libraries change, everything is compiled again.
-# When only KERNELS changes, only the table of kernels (select.c) is.
+# When only KERNELS or FLOAT changes, only the tables of kernels (select.c, table.c) are.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
-$(BUILD)/kernels: SAID = $(KERNELS)
+$(BUILD)/kernels: SAID = $(KERNELS) $(FLOAT)
 $(BUILD)/flags $(BUILD)/kernels: FORCE
 	@mkdir -p $(@D)
 	@echo '$(SAID)' | cmp -s - $@ || echo '$(SAID)' > $@
@@ -598,7 +602,7 @@ $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 
 demo: ## renders scripts/moving_light.lua, 120 frames, into build/demo/
 	@tests/deps.sh build
-	@$(MAKE) --no-print-directory $(if $(filter file,$(origin KERNELS)),KERNELS=native) demo-run
+	@$(MAKE) --no-print-directory $(if $(filter file,$(origin KERNELS)),KERNELS=native FLOAT=) demo-run
 
 demo-run: all
 	@mkdir -p $(BUILD)/demo
@@ -608,6 +612,7 @@ demo-run: all
 	@echo "Look at one with any viewer, or at all of them as a film:"
 	@echo "  ffmpeg -framerate 24 -i $(BUILD)/demo/moving_light_%04d.png -pix_fmt yuv420p $(BUILD)/demo/moving_light.mp4"
 	@echo "Try:  $(BUILD)/glint scripts/moving_light.lua --help"
+	$(if $(FLOAT),,@echo "This build is slow with --precision float. make builds everything.")
 
 # The Lua modules: gr.lua is `require "gr"`, glint/xyz.lua is `require "glint.xyz"`.
 LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua scripts/lib/*/*.lua)))

@@ -71,5 +71,7 @@ bool glint_stages_usable(const glint_stages *stages);
 /// GLINT_ISA names, otherwise the best one that the machine supports. Returns NULL if the name is unknown (*unknown
 /// is true) or the machine lacks the instruction set (*unknown is false); *requested is the name.
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
+/// Returns the kernels of a frame in this precision: `stages`, or the reference in a build without float kernels.
+const glint_stages *glint_stages_for(const glint_stages *stages, glint_precision precision);
 
 #endif

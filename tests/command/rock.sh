@@ -2,7 +2,7 @@
 # Installs the rock of `make dist` into an empty folder; without git and zip, the result of `luarocks make`. The module
 # must load in plain Lua and render, the command must run, and removing the rock must remove both.
 . tests/command/prelude.sh
-rocks() { HOME=$work MAKEFLAGS="-j2 -- KERNELS=native" luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
+rocks() { HOME=$work MAKEFLAGS="-j2 -- KERNELS=native FLOAT=" luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
 
 command -v luarocks >/dev/null || {
     echo "skip: luarocks is not installed"
@@ -30,6 +30,8 @@ END
 check "the module renders in plain Lua" env LUA_CPATH="$work/tree/lib/lua/5.4/?.so" "${LUA:-lua5.4}" "$work/scene.lua" "$work/plain.png"
 check "the command renders" "$work/tree/bin/glint" "$work/scene.lua" --quiet -- "$work/command.png"
 check "both alike" "$work/tree/bin/glint" compare "$work/plain.png" "$work/command.png" --fail 0 --warn 0
+check "float without its kernels" "$work/tree/bin/glint" scripts/mirror_and_glass.lua --precision float --size 64x48 -q -o "$work/float.png"
+check "has the golden's pixels" "$work/tree/bin/glint" compare "$work/float.png" tests/golden/mirror_and_glass_float.png
 check "luarocks remove" rocks remove glint
 check "nothing is left" test -z "$(find "$work/tree" -name 'glint*' -type f)"
 totals

@@ -64,3 +64,13 @@ const glint_stages *glint_stages_select(const char *name, const char **requested
     }
     return best;
 }
+
+const glint_stages *glint_stages_for(const glint_stages *stages, glint_precision precision)
+{
+#ifdef GLINT_NO_FLOAT
+    if (precision == GLINT_FLOAT)
+        return &glint_stages_ref;
+#endif
+    (void)precision;
+    return stages;
+}

@@ -18,7 +18,11 @@
 
 const glint_stages GLINT_ENTRY_OF(stages, GLINT_ISA) = {
     .name = GLINT_TEXT(GLINT_ISA),
+#ifdef GLINT_NO_FLOAT // glint_stages_for returns the reference
+    .geometry = { GEOMETRY_STAGES(f64) },
+#else
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
+#endif
     .sky = GLINT_WITH_INDIRECT ? GLINT_ENTRY(sky) : NULL,
     .program = GLINT_WITH_PROGRAM ? GLINT_ENTRY(program) : NULL,
     .unit = GLINT_WITH_PROGRAM ? GLINT_ENTRY(unit) : NULL,
