@@ -48,7 +48,7 @@ done
 layer engine/reuse engine/program engine/plan engine/film $stages $base
 layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
 layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/overlay engine/film $base
-includes 'engine/effects/*/*.[ch]' "$effects" engine/frame engine/tile engine/program engine/reuse engine/plan engine/geometry engine/scene \
+includes 'engine/effects/*/*.[ch]' "$effects" engine/effects engine/frame engine/tile engine/program engine/reuse engine/plan engine/geometry engine/scene \
     engine/film $stages engine/stages/light $base
 layer engine/file engine/ink engine/text engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base

@@ -11,6 +11,7 @@
     STAGE(PATTERN, pattern) \
     STAGE(VIEW, view) \
     STAGE(LIGHT, light) \
+    STAGE(SHUTTER, shutter) \
     STAGE(FACET, facet) \
     STAGE(OCCLUDE, occlude) \
     STAGE(VERTEX, vertex) \

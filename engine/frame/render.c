@@ -369,7 +369,7 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
     GLINT_REFUSE_NULL(out, error);
     const double *r = plan->desc.region;
     glint_image *whole = NULL, *part = NULL;
-    glint_status status = plan->times ? glint_render_times(renderer, plan, &whole, stats, error)
+    glint_status status = plan->times ? glint_stage_table[GLINT_STAGE_SHUTTER]->render(renderer, plan, &whole, stats, error)
                                       : glint_render_instant(renderer, plan, &whole, stats, error);
     if (!status && r[2] > 0) {
         status = glint_image_crop(whole, (int)r[0], (int)r[1], (int)r[2], (int)r[3], &part, error);

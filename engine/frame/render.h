@@ -13,10 +13,6 @@ glint_pool *glint_renderer_pool(const glint_renderer *renderer);
 glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
                                   glint_frame_stats *stats, glint_error *error);
 
-/// Does the same for a plan that has `times`, into a new image.
-glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
-                                glint_frame_stats *stats, glint_error *error);
-
 /// Returns the plan's overlays, with the parts of their curves that surfaces hide. The plan must have overlays. The
 /// caller owns a reference, even on failure unless *out is NULL.
 glint_status glint_hidden_find(const glint_stages *stages, const glint_plan *plan, glint_overlays **out, glint_error *error);

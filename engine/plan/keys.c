@@ -4,7 +4,7 @@
 /// declaration.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/effects/light_groups/plan.h"
+#include "engine/plan/light_groups.h"
 #include "engine/program/program.h"
 
 #include <stdlib.h>

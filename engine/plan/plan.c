@@ -1,5 +1,5 @@
 #include "engine/effects/raster/plan.h"
-#include "engine/effects/light_groups/plan.h"
+#include "engine/plan/light_groups.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -140,21 +140,29 @@ static void choose_stages(glint_plan *plan)
     list_steps(plan);
 }
 
-/// Lets each stage store what only it reads.
-static glint_status prepare_stages(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
+/// Lets each stage fill its tables.
+static glint_status prepare_stages(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
     glint_status status = GLINT_OK;
     for (int id = 0; id < GLINT_STAGE_COUNT && !status; id++)
         if (glint_stage_table[id]->prepare)
-            status = glint_stage_table[id]->prepare(plan, scene, error);
+            status = glint_stage_table[id]->prepare(plan, from, error);
     return status;
 }
 
-/// Fills the plan. times: the plans of the shutter's times, whose lights the frame uses; NULL: its own lights. desc:
-/// includes the derivatives.
-static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
-                         glint_plan *const *times, glint_error *error)
+/// Lets each stage refuse the frame.
+static glint_status check_stages(const glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
+    glint_status status = GLINT_OK;
+    for (int id = 0; id < GLINT_STAGE_COUNT && !status; id++)
+        if (glint_stage_table[id]->check)
+            status = glint_stage_table[id]->check(plan, scene, error);
+    return status;
+}
+
+static glint_status fill(glint_plan *plan, const glint_plan_input *from, glint_error *error)
+{
+    const glint_scene *scene = from->scene;
     glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
     if (!status)
@@ -167,24 +175,12 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint
         status = glint_plan_find_patterns(plan, glint_plan_has_indirect(&scene->desc), error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
-    if (!status && times)
-        status = glint_plan_take_lights(plan, times, plan->shutter_times, error);
     if (!status)
-        status = glint_plan_find_derivatives(plan, scene, desc, error);
-    if (!status)
-        status = glint_plan_visible_lights(plan, scene, error);
-    if (!status)
-        status = glint_plan_find_environment(plan, &scene->desc, error);
-    if (!status)
-        status = glint_plan_find_indirect(plan, &scene->desc, error);
-    if (!status)
-        status = glint_plan_bounce(plan, error);
-    if (!status)
-        status = prepare_stages(plan, &scene->desc, error);
+        status = prepare_stages(plan, from, error);
     if (status)
         return status;
     choose_stages(plan);
-    status = glint_plan_check_derivatives(plan, scene, error);
+    status = check_stages(plan, scene, error);
     if (status)
         return status;
     choose_visibility(plan);
@@ -199,10 +195,10 @@ static glint_status take_overlays(glint_plan *plan, const glint_scene *scene, gl
     return glint_overlays_take(scene, (int)plan->desc.width, (int)plan->desc.height, &camera, &plan->overlays, error);
 }
 
-/// Creates a plan. times: see `fill`. shutter_times: the number of times of the frame, or 0.
-static glint_status create(const glint_scene *scene, const glint_render_desc *desc, glint_plan *const *times,
-                           uint32_t shutter_times, glint_plan **out, glint_error *error)
+glint_status glint_plan_make(const glint_plan_input *from, glint_plan **out, glint_error *error)
 {
+    const glint_scene *scene = from->scene;
+    const glint_render_desc *desc = from->desc;
     glint_status status = check_render_desc(desc, error);
     if (status)
         return status;
@@ -212,7 +208,7 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
     if (!plan)
         return glint_fail_nomem(error);
     plan->desc = *desc;
-    plan->shutter_times = shutter_times;
+    plan->shutter_times = from->shutter_times;
     plan->desc.derivatives = NULL;
     plan->desc.passes |= ((1u << desc->derivative_count) - 1) << GLINT_PASS_DERIVATIVE;
     if (desc->alpha && desc->passes >> GLINT_PASS_BEAUTY & 1)
@@ -221,7 +217,7 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
         plan->desc.passes |= 1u << GLINT_PASS_OUTLINE;
     if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
         plan->desc.passes |= GLINT_OUTLINE_READS;
-    status = fill(plan, scene, desc, times, error);
+    status = fill(plan, from, error);
     if (!status)
         status = take_overlays(plan, scene, error);
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
@@ -245,62 +241,7 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     GLINT_REFUSE_NULL(scene, error);
     GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    return create(scene, desc, NULL, 0, out, error);
-}
-
-/// Returns whether a time has derivatives that the whole frame lacks.
-static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
-{
-    bool more = false;
-    for (size_t i = 0; time->derivatives && i < time->derivatives->count; i++) {
-        bool found = false;
-        for (size_t k = 0; k < frame->derivative_count; k++)
-            found = found || strcmp(time->derivatives->of[i].name, frame->derivatives[k].name) == 0;
-        more = more || !found;
-    }
-    return more;
-}
-
-static glint_status check_times(glint_plan *const *times, size_t count, const glint_render_desc *desc,
-                                glint_error *error)
-{
-    const glint_render_desc expected = glint_shutter_desc(desc);
-    if (count < 1 || count > GLINT_SHUTTER_TIMES_MAX)
-        return glint_fail(error, GLINT_ERR_INVALID, "times: 1 .. %d expected, got %zu", GLINT_SHUTTER_TIMES_MAX, count);
-    for (size_t k = 0; k < count; k++) {
-        const glint_render_desc *d = &times[k]->desc;
-        if (d->width != expected.width || d->height != expected.height || d->codes ||
-            (d->passes & expected.passes) != expected.passes || memcmp(d->region, expected.region, sizeof d->region))
-            return glint_fail(error, GLINT_ERR_INVALID, "times: a plan by glint_shutter_desc of the frame expected");
-        if (derives_more(times[k], desc))
-            return glint_fail(error, GLINT_ERR_INVALID, "times: expected the derivatives of the frame, and no others");
-    }
-    return GLINT_OK;
-}
-
-glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
-                                       size_t count, glint_plan **out, glint_error *error)
-{
-    GLINT_REFUSE_NULL(scene, error);
-    GLINT_REFUSE_NULL(desc, error);
-    GLINT_REFUSE_NULL(times, error);
-    GLINT_REFUSE_NULL(out, error);
-    glint_plan *plan = NULL, *all = NULL;
-    glint_status status = check_times(times, count, desc, error);
-    if (!status)
-        status = create(scene, desc, NULL, (uint32_t)count, &plan, error);
-    if (!status && glint_plan_adds_up(plan, times, count))
-        status = create(scene, desc, times, (uint32_t)count, &all, error);
-    if (all || status) {
-        glint_plan_destroy(plan);
-        glint_plan_free_times(times, count);
-        plan = all;
-    } else {
-        plan->times = times;
-    }
-    if (!status)
-        *out = plan;
-    return status;
+    return glint_plan_make(&(glint_plan_input) { .scene = scene, .desc = desc }, out, error);
 }
 
 glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
@@ -315,8 +256,11 @@ void glint_plan_destroy(glint_plan *plan)
 {
     if (!plan)
         return;
-    if (plan->times)
-        glint_plan_free_times(plan->times, plan->shutter_times);
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        if (glint_stage_table[id]->release)
+            glint_stage_table[id]->release(plan);
+        free(plan->own[id]);
+    }
     glint_plan_destroy(plan->base);
     glint_plan_translucent_free(plan);
     glint_geometry_release(plan->geometry);
@@ -324,18 +268,10 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->lens);
     free(plan->lights);
     free(plan->light_samples);
-    free(plan->visible_lights);
-    free(plan->visible_light_edges);
     free(plan->materials);
-    glint_plan_patterns_free(plan->patterns);
-    glint_plan_environment_free(plan->environment);
     free(plan->bouncing);
-    glint_plan_derivatives_free(plan->derivatives);
+    glint_plan_patterns_free(plan->patterns);
     glint_light_groups_free(plan->light_groups);
-    free(plan->indirect.rest);
-    free(plan->indirect.light_rows);
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        free(plan->own[id]);
     free(plan->material_keys);
     free(plan->matte_keys);
     free(plan->lines);
@@ -444,9 +380,9 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
     const bool outlined = desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline;
     if ((outlined || (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1)) && glint_plan_casts_centres(plan))
         key = glint_key_add_string(key, "centres"); // earlier versions computed these passes from the first sample
-    const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
-    if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
-        key = glint_derivative_key(plan, derivative, key);
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (plan->runs[id] && glint_stage_table[id]->pass_key)
+            key = glint_stage_table[id]->pass_key(plan, (int)desc->pass, key);
     if (desc->pass >= GLINT_PASS_LIGHT)
         key = glint_light_pass_key(plan, (uint32_t)desc->pass - GLINT_PASS_LIGHT, key);
     const bool scaled = desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT);

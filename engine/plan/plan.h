@@ -127,6 +127,14 @@ typedef struct glint_text_line {
     char caller[2 * GLINT_NAME_SIZE];
 } glint_text_line;
 
+/// What a plan is made from.
+typedef struct glint_plan_input {
+    const glint_scene *scene;
+    const glint_render_desc *desc;
+    struct glint_plan *const *times; ///< the plans of the shutter's times, whose lights the frame uses; NULL: its own lights
+    uint32_t shutter_times; ///< number of times of the frame, or 0
+} glint_plan_input;
+
 struct glint_plan {
     glint_render_desc desc;
     uint32_t shutter_times; ///< the frame's light is the mean over this number of times; 0: one instant
@@ -248,12 +256,8 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 /// The passes that take the mean of all samples of a pixel: beauty, the terms of its light, and alpha.
 #define GLINT_LIGHT_PASSES (((1u << (GLINT_PASS_TRANSMISSION + 1)) - 1) | 1u << GLINT_PASS_ALPHA)
 
-/// Returns whether a frame's plan and the plans of its times differ only in their lights, and whether the frame can
-/// add up the light of all times.
-bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count);
-/// Replaces a plan's lights by the lights of all times, each weighted by its share. Call after shading.
-glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error);
-void glint_plan_free_times(glint_plan **times, size_t count); ///< frees the plans and the list; NULL: nothing
+/// Creates a plan.
+glint_status glint_plan_make(const glint_plan_input *from, glint_plan **out, glint_error *error);
 
 /// Returns the tone curve of the pixel values that adaptive sampling compares. The base has pixel values only if
 /// necessary; otherwise the comparison estimates them.
@@ -298,31 +302,23 @@ void glint_plan_count_lights(glint_plan *plan);
 /// Fills one material's row. `ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
 
-/// Fills the environment.
-glint_status glint_plan_find_environment(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
-void glint_plan_environment_free(glint_plan_environment *environment); ///< NULL: nothing
-/// Returns whether there may be indirect light or ambient occlusion.
-bool glint_plan_has_indirect(const glint_scene_desc *scene);
-/// Fills the tables of indirect light, after shading, and subtracts the part that it replaces from the materials'
-/// ambient light.
-glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
-/// Fills the tables of mirrors and transparent materials, after the tables of indirect light.
-glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
+/// Returns whether a scene asks for indirect light or ambient occlusion.
+static inline bool glint_plan_has_indirect(const glint_scene_desc *scene)
+{
+    return scene->has_ambient_occlusion || (scene->has_indirect && scene->indirect_bounces > 0);
+}
 /// Continues a key with the transmission of a material.
-glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key);
-/// Finds the media that contain the eye of a perspective camera. glint_plan_bounce calls it if some material transmits.
+static inline glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key)
+{
+    GLINT_KEY_ADD(key, m->transmission);
+    if (m->clear > 0)
+        GLINT_KEY_ADD(key, m->clear);
+    GLINT_KEY_ADD(key, m->absorption);
+    return key;
+}
+/// Finds the media that contain the eye of a perspective camera, if some material transmits.
 glint_status glint_plan_eye(glint_plan *plan, glint_error *error);
 
-/// Fills the derivatives that `desc` requests, after shading.
-glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
-                                         glint_error *error);
-/// Checks that everything in the frame that depends on the parameters has derivatives. The stages must be chosen.
-glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error);
-/// Continues a key with everything that a derivative reads in addition to the frame.
-glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key key);
-
-/// Fills the visible lights.
-glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Returns whether a light is visible, and writes its brightness: pi times its radiance.
 ///
 /// With `radiance` L: pi L color. With `intensity` I: color I A(D), where A is the light's fall-off and D the radius of

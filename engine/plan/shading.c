@@ -2,7 +2,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/area_light.h"
-#include "engine/effects/light_groups/plan.h"
+#include "engine/plan/light_groups.h"
 #include "engine/stages/simd/coefficients.h"
 
 #include <float.h>
@@ -133,6 +133,19 @@ static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
     out->spot.outer = outer;
     out->spot.inverse = inner > outer ? 1 / (inner - outer) : HUGE_VAL;
     out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
+}
+
+bool glint_light_shows(const glint_light_desc *desc, double shown[3])
+{
+    const double area = glint_light_sample_area(desc), *a = desc->attenuation;
+    if (!desc->visible || !(area > 0))
+        return false;
+    const double distance = desc->kind == GLINT_LIGHT_POLYGON ? sqrt(area / PI) : desc->radius;
+    const double factor = desc->has_radiance
+                              ? PI * desc->radiance
+                              : desc->intensity / (a[0] + (a[1] * distance + a[2] * (distance * distance)));
+    glint_plan_bounded(shown, desc->color, factor);
+    return shown[0] > 0 || shown[1] > 0 || shown[2] > 0;
 }
 
 /// Returns the power of two that scales the largest distance from `position` to a bounded surface to about 1. Then no

@@ -13,6 +13,7 @@
 typedef enum glint_stage_id { GLINT_STAGES(GLINT_STAGE_ID) GLINT_STAGE_COUNT } glint_stage_id;
 
 struct glint_plan;
+struct glint_plan_input;
 
 /// Continues a key with the bytes of a value.
 #define GLINT_KEY_ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
@@ -75,15 +76,25 @@ typedef struct glint_stage {
     const char *name;
     const char *doc; ///< the result in a few words, for `glint explain`
     const char *effect, *caller; ///< the effect and the option that asks for it, for `glint explain`; NULL: not listed
-    /// Stores what the stage alone reads, in plan->own[id], one block that the plan frees. Called when all other tables
-    /// of the plan are filled. NULL: the stage reads only these tables. `effect` is listed if there is such a block.
-    glint_status (*prepare)(struct glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
+    /// Fills the tables of the stage: in plan->own[id], one block that the plan frees, or in fields of the plan. Called
+    /// in the order of the list, when geometry, materials and lights are known. NULL: the stage has no tables. `effect`
+    /// is listed if there is such a block.
+    glint_status (*prepare)(struct glint_plan *plan, const struct glint_plan_input *from, glint_error *error);
+    /// Refuses frames that the stage cannot render. The stages of the frame are known. NULL: none
+    glint_status (*check)(const struct glint_plan *plan, const glint_scene *scene, glint_error *error);
+    void (*release)(struct glint_plan *plan); ///< frees the fields of the plan that `prepare` filled. NULL: none
     /// Returns whether the frame needs the stage; the plan's tables are filled
     bool (*called)(const struct glint_plan *plan);
     uint64_t reads; ///< inputs of the stage, a set made by GLINT_READS and GLINT_READS_OWN; the results of the stages
         ///< before it are implied
     glint_key (*own)(const struct glint_plan *plan,
                      glint_key key); ///< continues a key with data that only this stage reads; NULL: none
+    glint_key (*pass_key)(const struct glint_plan *plan, int pass,
+                          glint_key key); ///< continues a key with what only this pass depends on; NULL: nothing
+    /// Renders frames of a plan with several times in place of glint_render_instant. NULL: the stage renders no whole
+    /// frame.
+    glint_status (*render)(glint_renderer *renderer, const struct glint_plan *plan, glint_image **out, glint_frame_stats *stats,
+                           glint_error *error);
     bool aside; ///< the stages after it read its inputs instead of its result, or neither
     bool per_light; ///< whether the stage runs once for each light
     bool walks; ///< whether the stage traverses the BVH

@@ -19,6 +19,7 @@
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
 #include "engine/effects/light_groups/light_groups.h"
+#include "engine/effects/prepare.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -399,6 +400,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 const glint_stage glint_stage_bounce = {
     .name = "bounce",
     .doc = "mirror and refraction rays, rays through translucent surfaces, and the light of these rays",
+    .prepare = glint_bounce_prepare,
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(BOUNCE),

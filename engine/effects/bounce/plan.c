@@ -2,7 +2,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/plan/plan.h"
+#include "engine/effects/prepare.h"
 
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
 
@@ -151,8 +151,9 @@ static glint_status check_depth(const glint_plan *plan, double most, glint_error
                       GLINT_BOUNCE_DEPTH, most, plan->desc.max_depth);
 }
 
-glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
+glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
+    (void)from;
     const glint_list *list = &plan->geometry->materials;
     double splitting = 0;
     bool any = false;
@@ -183,13 +184,4 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
     if (!status && plan->transmits && !plan->camera.orthographic)
         status = glint_plan_eye(plan, error);
     return status;
-}
-
-glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key)
-{
-    GLINT_KEY_ADD(key, m->transmission);
-    if (m->clear > 0)
-        GLINT_KEY_ADD(key, m->clear);
-    GLINT_KEY_ADD(key, m->absorption);
-    return key;
 }

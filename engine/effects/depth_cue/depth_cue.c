@@ -104,8 +104,9 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-static glint_status prepare(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
+static glint_status prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
+    const glint_scene_desc *scene = &from->scene->desc;
     if (!scene->has_depth_cue || (plan->geometry->table.prim_count == 0 && plan->visible_light_count == 0))
         return GLINT_OK;
     glint_plan_depth_cue *cue = malloc(sizeof *cue);

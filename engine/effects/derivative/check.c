@@ -121,7 +121,7 @@ static glint_status check_light(const glint_plan *plan, const glint_plan_derivat
     return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: %s", d->name, name, why);
 }
 
-glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error)
+glint_status glint_derivative_check(const glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     const glint_plan_derivatives *all = plan->derivatives;
     const char *why = all ? find_obstacle(plan) : NULL;

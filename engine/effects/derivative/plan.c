@@ -440,14 +440,13 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
     return status ? status : glint_derivative_find_gradients(plan, error);
 }
 
-glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
-                                         glint_error *error)
+glint_status glint_derivative_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
-    glint_status status = check_names(desc, error);
-    if (status || !desc->derivative_count)
+    glint_status status = check_names(from->desc, error);
+    if (status || !from->desc->derivative_count)
         return status;
     plan->derivatives = calloc(1, sizeof *plan->derivatives);
-    return plan->derivatives ? make_all(plan, scene, desc, error) : glint_fail_nomem(error);
+    return plan->derivatives ? make_all(plan, from->scene, from->desc, error) : glint_fail_nomem(error);
 }
 
 static void free_one(glint_plan_derivative *d, size_t materials)
@@ -461,8 +460,9 @@ static void free_one(glint_plan_derivative *d, size_t materials)
     free(d->parts);
 }
 
-void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
+void glint_derivative_release(glint_plan *plan)
 {
+    glint_plan_derivatives *derivatives = plan->derivatives;
     for (size_t i = 0; derivatives && i < GLINT_DERIVATIVES_MAX; i++) {
         free_one(&derivatives->of[i], derivatives->material_count);
         free_one(&derivatives->level[i], derivatives->material_count);
@@ -474,8 +474,11 @@ void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
     free(derivatives);
 }
 
-glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key key)
+glint_key glint_derivative_key(const glint_plan *plan, int pass, glint_key key)
 {
+    const size_t index = (size_t)pass - GLINT_PASS_DERIVATIVE;
+    if (pass < GLINT_PASS_DERIVATIVE || index >= plan->derivatives->count)
+        return key;
     const glint_plan_derivative *d = &plan->derivatives->of[index];
     key = glint_key_add_string(key, d->name);
     key = glint_key_add(key, d->materials, plan->geometry->materials.count * sizeof *d->materials);

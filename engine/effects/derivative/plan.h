@@ -48,6 +48,4 @@ typedef struct glint_plan_derivatives {
         ///< depends on the parameter
 } glint_plan_derivatives;
 
-void glint_plan_derivatives_free(glint_plan_derivatives *derivatives); ///< NULL: nothing
-
 #endif

@@ -1,6 +1,7 @@
 /// The declaration of the stage derivative.
 #include "engine/base/alloc.h"
 #include "engine/effects/derivative/work.h"
+#include "engine/effects/prepare.h"
 
 #include <stdlib.h>
 
@@ -24,7 +25,7 @@ static void destroy(void *memory)
 static glint_key own_key(const glint_plan *plan, glint_key key)
 {
     for (size_t i = 0; i < plan->derivatives->count; i++)
-        key = glint_derivative_key(plan, i, key);
+        key = glint_derivative_key(plan, GLINT_PASS_DERIVATIVE + (int)i, key);
     return key;
 }
 
@@ -59,8 +60,12 @@ static bool fit(void *memory, const glint_plan *plan) { return glint_derivative_
 const glint_stage glint_stage_derivative = {
     .name = "derivative",
     .doc = "derivatives of the picture by parameters",
+    .prepare = glint_derivative_prepare,
+    .check = glint_derivative_check,
+    .release = glint_derivative_release,
     .called = called,
     .own = own_key,
+    .pass_key = glint_derivative_key,
     .reads = GLINT_READS_OWN(DERIVATIVE),
     .normals = true,
     .remote = true,

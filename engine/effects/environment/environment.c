@@ -6,6 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/effects/pattern/inputs.h"
+#include "engine/effects/prepare.h"
 #include "engine/tile/rays.h"
 
 #include <stdlib.h>
@@ -298,6 +299,8 @@ static void need_directions(glint_tile *tile, const glint_tile_frame *frame, gli
 const glint_stage glint_stage_environment = {
     .name = "environment",
     .doc = "the background pattern for rays that leave the scene",
+    .prepare = glint_environment_prepare,
+    .release = glint_environment_release,
     .called = called,
     .sums = true,
     .remote = true,

@@ -3,7 +3,7 @@
 #include "engine/base/maker.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/plan/plan.h"
+#include "engine/effects/prepare.h"
 #include "engine/program/builder.h"
 
 #include <stdlib.h>
@@ -40,8 +40,9 @@ static glint_status find_uv(glint_plan_environment *environment, glint_error *er
     return status;
 }
 
-glint_status glint_plan_find_environment(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
+glint_status glint_environment_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
+    const glint_scene_desc *scene = &from->scene->desc;
     if (!scene->background_program)
         return GLINT_OK;
     glint_plan_environment *environment = plan->environment = glint_alloc(1, sizeof *environment);
@@ -54,8 +55,9 @@ glint_status glint_plan_find_environment(glint_plan *plan, const glint_scene_des
     return environment->program->inputs & GLINT_READS_UV ? find_uv(environment, error) : GLINT_OK;
 }
 
-void glint_plan_environment_free(glint_plan_environment *environment)
+void glint_environment_release(glint_plan *plan)
 {
+    glint_plan_environment *environment = plan->environment;
     if (!environment)
         return;
     glint_program_release(environment->program);

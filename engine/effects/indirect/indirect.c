@@ -18,6 +18,7 @@
 #include "engine/base/vec.h"
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/light_groups/light_groups.h"
+#include "engine/effects/prepare.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -397,9 +398,17 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     glint_tile_count_stage(tile, frame, GLINT_STAGE_INDIRECT, false);
 }
 
+static void release(glint_plan *plan)
+{
+    free(plan->indirect.rest);
+    free(plan->indirect.light_rows);
+}
+
 const glint_stage glint_stage_indirect = {
     .name = "indirect",
     .doc = "light from other surfaces and from the background",
+    .prepare = glint_indirect_prepare,
+    .release = release,
     .called = called,
     .own = own_key,
     .reads = GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE),

@@ -9,7 +9,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/plan/plan.h"
+#include "engine/effects/prepare.h"
 
 static bool is_matt(const glint_plan *plan, uint32_t i)
 {
@@ -50,13 +50,9 @@ static glint_status find_lights(glint_plan *plan, glint_error *error)
     return GLINT_OK;
 }
 
-bool glint_plan_has_indirect(const glint_scene_desc *scene)
+glint_status glint_indirect_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
-    return scene->has_ambient_occlusion || (scene->has_indirect && scene->indirect_bounces > 0);
-}
-
-glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
-{
+    const glint_scene_desc *scene = &from->scene->desc;
     glint_plan_indirect *indirect = &plan->indirect;
     bool matt = false;
     for (uint32_t i = 0; i < plan->material_count; i++)

@@ -7,7 +7,7 @@
 #ifndef GLINT_LIGHT_GROUPS_H
 #define GLINT_LIGHT_GROUPS_H
 
-#include "engine/effects/light_groups/plan.h"
+#include "engine/plan/light_groups.h"
 #include "engine/tile/batch.h"
 
 struct glint_group_sums *glint_group_sums_create(const glint_plan *plan);

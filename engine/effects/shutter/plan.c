@@ -6,7 +6,8 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/effects/light_groups/plan.h"
+#include "engine/effects/prepare.h"
+#include "engine/plan/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -54,12 +55,14 @@ static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
            vec_equal(a->ambient, b->ambient) && glint_light_groups_equal(a, b);
 }
 
-bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count)
+/// Returns whether a frame's plan and the plans of its times differ only in their lights, and whether the frame can
+/// add up the light of all times.
+static bool adds_up(const glint_plan *plan, glint_plan *const *times, size_t count)
 {
-    bool adds_up = plan->base == NULL && !plan->runs[GLINT_STAGE_SHADER] && !plan->derivatives;
-    for (size_t k = 0; k < count && adds_up; k++)
-        adds_up = differ_in_lights(plan, times[k]) && times[k]->caps == plan->caps;
-    return adds_up;
+    bool same = plan->base == NULL && !plan->runs[GLINT_STAGE_SHADER] && !plan->derivatives;
+    for (size_t k = 0; k < count && same; k++)
+        same = differ_in_lights(plan, times[k]) && times[k]->caps == plan->caps;
+    return same;
 }
 
 // ---- The lights of all times ----
@@ -158,9 +161,13 @@ static glint_status ensure_capacity(lights *to, glint_plan *const *times, size_t
     return to->rows && to->samples ? GLINT_OK : glint_fail_nomem(error);
 }
 
-glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error)
+glint_status glint_shutter_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
+    glint_plan *const *times = from->times;
+    const size_t count = from->shutter_times;
     lights all = { 0 };
+    if (!times)
+        return GLINT_OK;
     glint_status status = ensure_capacity(&all, times, count, error);
     if (status) {
         free(all.rows);
@@ -183,9 +190,75 @@ glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, 
     return GLINT_OK;
 }
 
-void glint_plan_free_times(glint_plan **times, size_t count)
+// ---- Plans ----
+
+/// Frees the plans and the list.
+static void free_times(glint_plan **times, size_t count)
 {
     for (size_t k = 0; k < count; k++)
         glint_plan_destroy(times[k]);
     free(times);
+}
+
+void glint_shutter_release(glint_plan *plan)
+{
+    if (plan->times)
+        free_times(plan->times, plan->shutter_times);
+}
+
+/// Returns whether a time has derivatives that the whole frame lacks.
+static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
+{
+    bool more = false;
+    for (size_t i = 0; time->derivatives && i < time->derivatives->count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < frame->derivative_count; k++)
+            found = found || strcmp(time->derivatives->of[i].name, frame->derivatives[k].name) == 0;
+        more = more || !found;
+    }
+    return more;
+}
+
+static glint_status check_times(glint_plan *const *times, size_t count, const glint_render_desc *desc,
+                                glint_error *error)
+{
+    const glint_render_desc expected = glint_shutter_desc(desc);
+    if (count < 1 || count > GLINT_SHUTTER_TIMES_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "times: 1 .. %d expected, got %zu", GLINT_SHUTTER_TIMES_MAX, count);
+    for (size_t k = 0; k < count; k++) {
+        const glint_render_desc *d = &times[k]->desc;
+        if (d->width != expected.width || d->height != expected.height || d->codes ||
+            (d->passes & expected.passes) != expected.passes || memcmp(d->region, expected.region, sizeof d->region))
+            return glint_fail(error, GLINT_ERR_INVALID, "times: a plan by glint_shutter_desc of the frame expected");
+        if (derives_more(times[k], desc))
+            return glint_fail(error, GLINT_ERR_INVALID, "times: expected the derivatives of the frame, and no others");
+    }
+    return GLINT_OK;
+}
+
+glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
+                                       size_t count, glint_plan **out, glint_error *error)
+{
+    GLINT_REFUSE_NULL(scene, error);
+    GLINT_REFUSE_NULL(desc, error);
+    GLINT_REFUSE_NULL(times, error);
+    GLINT_REFUSE_NULL(out, error);
+    glint_plan_input from = { .scene = scene, .desc = desc, .shutter_times = (uint32_t)count };
+    glint_plan *plan = NULL, *all = NULL;
+    glint_status status = check_times(times, count, desc, error);
+    if (!status)
+        status = glint_plan_make(&from, &plan, error);
+    from.times = times;
+    if (!status && adds_up(plan, times, count))
+        status = glint_plan_make(&from, &all, error);
+    if (all || status) {
+        glint_plan_destroy(plan);
+        free_times(times, count);
+        plan = all;
+    } else {
+        plan->times = times;
+    }
+    if (!status)
+        *out = plan;
+    return status;
 }

@@ -2,6 +2,7 @@
 /// with reuse between them, and added up in double.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/effects/prepare.h"
 #include "engine/film/tone.h"
 #include "engine/frame/render.h"
 
@@ -200,8 +201,8 @@ static glint_status render_all(exposure *e, glint_renderer *renderer, glint_fram
     return GLINT_OK;
 }
 
-glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
-                                glint_frame_stats *stats, glint_error *error)
+static glint_status render(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
+                           glint_frame_stats *stats, glint_error *error)
 {
     exposure e = { .plan = plan, .extent = glint_plan_extent(&plan->desc) };
     glint_frame_stats counted = { 0 };
@@ -225,3 +226,13 @@ glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan
     *out = e.image;
     return GLINT_OK;
 }
+
+static bool called(const glint_plan *plan) { return plan->times; }
+
+/// Renders whole frames in place of the core.
+const glint_stage glint_stage_shutter = {
+    .prepare = glint_shutter_prepare,
+    .release = glint_shutter_release,
+    .called = called,
+    .render = render,
+};

@@ -1,7 +1,7 @@
 #include "engine/effects/vertex_shading/shading_points.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/effects/light_groups/plan.h"
+#include "engine/plan/light_groups.h"
 
 #include <stdlib.h>
 

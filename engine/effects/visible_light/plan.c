@@ -3,22 +3,10 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/area_light.h"
-#include "engine/effects/light_groups/plan.h"
+#include "engine/effects/prepare.h"
+#include "engine/plan/light_groups.h"
 
-#define PI 0x1.921fb54442d18p+1
-
-bool glint_light_shows(const glint_light_desc *desc, double shown[3])
-{
-    const double area = glint_light_sample_area(desc), *a = desc->attenuation;
-    if (!desc->visible || !(area > 0))
-        return false;
-    const double distance = desc->kind == GLINT_LIGHT_POLYGON ? sqrt(area / PI) : desc->radius;
-    const double factor = desc->has_radiance
-                              ? PI * desc->radiance
-                              : desc->intensity / (a[0] + (a[1] * distance + a[2] * (distance * distance)));
-    glint_plan_bounded(shown, desc->color, factor);
-    return shown[0] > 0 || shown[1] > 0 || shown[2] > 0;
-}
+#include <stdlib.h>
 
 /// Adds the edges of a polygon to the plan's list.
 static void add_edges(glint_plan *plan, glint_plan_visible_light *visible_light, const glint_light_desc *desc)
@@ -60,8 +48,9 @@ static void add_visible_light(glint_plan *plan, const glint_light_desc *desc, co
     }
 }
 
-glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error)
+glint_status glint_visible_lights_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
+    const glint_scene *scene = from->scene;
     size_t lights = 0, edges = 0;
     double shown[3];
     for (size_t i = 0; i < scene->lights.count; i++) {
@@ -84,4 +73,10 @@ glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scen
         plan->visible_lights[plan->visible_light_count - 1].group = glint_light_group_of(plan, i);
     }
     return GLINT_OK;
+}
+
+void glint_visible_lights_release(glint_plan *plan)
+{
+    free(plan->visible_lights);
+    free(plan->visible_light_edges);
 }

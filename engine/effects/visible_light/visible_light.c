@@ -5,6 +5,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/light_groups/light_groups.h"
+#include "engine/effects/prepare.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -307,6 +308,8 @@ static void look(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
 const glint_stage glint_stage_visible_light = {
     .name = "visible_lights",
     .doc = "which rays see a light before any object",
+    .prepare = glint_visible_lights_prepare,
+    .release = glint_visible_lights_release,
     .called = called,
     .own = positions_key,
     .reads = GLINT_READS_OWN(VISIBLE_LIGHT),

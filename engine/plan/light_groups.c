@@ -1,5 +1,5 @@
 /// Light passes: the groups of lights, and those that a frame needs.
-#include "engine/effects/light_groups/plan.h"
+#include "engine/plan/light_groups.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 
