@@ -29,6 +29,7 @@
     STAGE(TINT, tint) \
     STAGE(CUT_OUT, cut_out) \
     STAGE(BUMP, bump) \
-    STAGE(LIGHT_GROUPS, light_groups)
+    STAGE(LIGHT_GROUPS, light_groups) \
+    STAGE(RASTER, raster)
 
 #endif

@@ -1,7 +1,6 @@
 /// Renders a frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancelling.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/effects/outline/outline.h"
 #include "engine/frame/render.h"
 #include "engine/frame/renderer.h"
 
@@ -58,6 +57,14 @@ static void drop_spares(glint_renderer *renderer)
     }
 }
 
+/// Frees the memory of a stage.
+static void end_stage(glint_renderer *renderer, int id)
+{
+    if (renderer->own[id])
+        glint_stage_table[id]->end(renderer);
+    renderer->own[id] = NULL;
+}
+
 void glint_renderer_destroy(glint_renderer *renderer)
 {
     if (!renderer)
@@ -70,8 +77,8 @@ void glint_renderer_destroy(glint_renderer *renderer)
         free(renderer->tiles);
     drop_spares(renderer);
     glint_pictures_clear(renderer);
-    glint_shading_points_clear(&renderer->shading_points, &renderer->reuse);
-    glint_raster_clear(&renderer->raster);
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        end_stage(renderer, id);
     glint_grids_clear(&renderer->own_grids);
     glint_reuse_destroy(&renderer->reuse);
     if (!renderer->shares) {
@@ -126,53 +133,39 @@ static void stamp_rows(glint_image *image, uint32_t across)
 }
 
 /// Finishes the frame with the work that needs all tiles.
-static void finish(glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, glint_image *image)
+static void finish(frame *f)
 {
-    glint_tile_counts *counts = &renderer->tiles[0]->counts;
-    if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(renderer->stop))
-        return;
-    const uint64_t start = glint_tile_now_ns();
-    glint_outline(plan, extent, renderer->pool, image);
-    counts->ns[GLINT_STAGE_OUTLINE] += glint_tile_now_ns() - start;
-    counts->runs[GLINT_STAGE_OUTLINE]++;
+    glint_tile_counts *counts = &f->renderer->tiles[0]->counts;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        if (!f->shared.plan->runs[id] || !glint_stage_table[id]->finish || atomic_load(f->renderer->stop))
+            continue;
+        const uint64_t start = glint_tile_now_ns();
+        glint_stage_table[id]->finish(f->renderer, &f->shared, &f->extent);
+        counts->ns[id] += glint_tile_now_ns() - start;
+        counts->runs[id]++;
+    }
 }
 
-/// Returns whether some tile's hits are not cached.
-static bool casts(const glint_reuse *reuse, const glint_plan *plan)
-{
-    for (size_t i = 0; i < reuse->tile_count; i++)
-        if (!glint_key_equal(reuse->tiles[i].cast, plan->keys[GLINT_STAGE_CAST]))
-            return true;
-    return reuse->tile_count == 0;
-}
-
-/// Prepares the geometry for the frame's rays, and chooses casting or scan conversion.
+/// Prepares the geometry for the frame's rays, and the data of stages.
 static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, glint_tile_frame *shared,
                             size_t tile_count, glint_error *error)
 {
-    glint_geometry *geometry = plan->geometry;
     glint_status status = plan->needs_index
-                              ? glint_geometry_index(geometry, renderer->pool, &shared->geometry, error)
-                              : glint_geometry_arrange(geometry, &shared->geometry, error);
+                              ? glint_geometry_index(plan->geometry, renderer->pool, &shared->geometry, error)
+                              : glint_geometry_arrange(plan->geometry, &shared->geometry, error);
     if (status)
         return status;
-    if (plan->tints) {
-        glint_tints_find(&renderer->tints, plan, &shared->geometry);
-        shared->tints = &renderer->tints;
-    }
     glint_reuse_carry(&renderer->reuse, plan, renderer->spare, GLINT_SPARE_IMAGES);
     glint_reuse_begin(&renderer->reuse, plan, tile_count);
-    renderer->raster.ms = 0;
-    if (!plan->raster || !casts(&renderer->reuse, plan))
-        return GLINT_OK;
-    const double begin = glint_frame_now_ms();
-    status = glint_raster_begin(&renderer->raster, plan, &shared->geometry, renderer->pool, error);
-    renderer->raster.ms = glint_frame_now_ms() - begin;
-    if (!shared->geometry.nodes)
-        atomic_fetch_add(&geometry->index->frames_without, 1);
-    shared->raster = !status && renderer->raster.on ? &renderer->raster : NULL;
-    if (!status && !shared->raster)
-        status = glint_geometry_index(geometry, renderer->pool, &shared->geometry, error);
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
+        renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
+    renderer->cast_ms = 0;
+    for (int id = 0; id < GLINT_STAGE_COUNT && !status; id++) {
+        if (!plan->runs[id])
+            end_stage(renderer, id);
+        else if (glint_stage_table[id]->begin)
+            status = glint_stage_table[id]->begin(renderer, shared, error);
+    }
     return status;
 }
 
@@ -211,7 +204,7 @@ static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_im
                                  .tone_table = table,
                                  .gain = glint_tone_gain(&plan->desc.tone),
                                  .reuse = &renderer->reuse,
-                                 .shading_points = &renderer->shading_points,
+                                 .own = renderer->own,
                                  .base = base,
                                  .refine = renderer->refine,
                                  .cancelled = renderer->stop,
@@ -234,17 +227,13 @@ static glint_status begin_tiles(frame *f, size_t tiles, glint_error *error)
         memset(image->film, 0, tiles * sizeof *image->film);
     if (!status)
         status = glint_grids_begin(renderer->grids, &f->shared, &f->extent, threads, error);
-    if (!status)
-        status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
     if (status)
         return status;
     if (renderer->reuse.tile_count && !image->film && !(image->film = calloc(tiles, sizeof *image->film)))
         return glint_fail_nomem(error);
-    for (int i = 0; i < threads; i++) {
-        renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
+    for (int i = 0; i < threads; i++)
         if (!glint_tile_extend(renderer->tiles[i], plan))
             return glint_fail_nomem(error);
-    }
     return GLINT_OK;
 }
 
@@ -262,9 +251,9 @@ glint_status glint_renderer_run(glint_renderer *renderer, const glint_plan *plan
     atomic_store(&renderer->tile_count, rendered);
     const double start = glint_frame_now_ms();
     glint_pool_run(renderer->pool, rendered, render_item, &f);
-    finish(renderer, plan, &f.extent, image);
-    glint_renderer_collect(renderer, plan, &f.extent, glint_frame_now_ms() - start + renderer->raster.ms, stats);
-    stats->build_ms = start - begin - renderer->raster.ms;
+    finish(&f);
+    glint_renderer_collect(renderer, plan, &f.extent, glint_frame_now_ms() - start + renderer->cast_ms, stats);
+    stats->build_ms = start - begin - renderer->cast_ms;
     stats->shifted = plan->derivatives && plan->derivatives->moves ? glint_count_shifted(image, &f.extent) : 0;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");

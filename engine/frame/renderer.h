@@ -7,7 +7,6 @@
 #include "engine/film/tone.h"
 #include "engine/frame/grids.h"
 #include "engine/effects/adaptive/choose.h"
-#include "engine/effects/transparent_shadow/plan.h"
 #include "engine/reuse/reuse.h"
 #include "engine/tile/tile.h"
 
@@ -40,9 +39,8 @@ struct glint_renderer {
     atomic_size_t tile_count;
     glint_tile **tiles; ///< working memory for a tile, one for each worker
     glint_reuse reuse;
-    glint_shading_points_cached shading_points;
-    glint_raster raster;
-    glint_tints tints; ///< colours of shadows, for frames where transparent materials tint shadows
+    void *own[GLINT_STAGE_COUNT]; ///< memory of each stage that has `begin`; NULL: not needed in the last frame
+    double cast_ms; ///< time of finding hits before the tiles of the frame
     glint_grids own_grids, *grids; ///< a renderer of bases uses the grids of the frame's renderer
     glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's picture; stored pictures
     double picture_floor; ///< worth of the last dropped picture; it rises, so that unused pictures age

@@ -64,8 +64,7 @@ void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *pl
     const int threads = glint_pool_threads(renderer->pool);
     for (int i = 0; i < threads; i++)
         add_counts(&sum, &renderer->tiles[i]->counts);
-    sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
-    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)threads;
+    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->cast_ms * 1e6) * (uint64_t)threads;
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *out = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned),
                                  .tone_ms = wall_ms * toned,

@@ -292,7 +292,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         one(e, plan->runs[GLINT_STAGE_INDIRECT], plan->indirect.is_sky ? "ambient occlusion" : "indirect light",
             plan->indirect.is_sky ? "scene.ambient_occlusion" : "scene.indirect");
         shapes(e, "triangles", is_mesh);
-        one(e, plan->raster, "scan conversion", "%s: %u triangles",
+        one(e, plan->runs[GLINT_STAGE_RASTER], "scan conversion", "%s: %u triangles",
             plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "faster here than casting rays",
             plan->geometry->table.triangles);
         shapes(e, "smooth normals", is_smooth);

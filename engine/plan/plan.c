@@ -1,4 +1,3 @@
-#include "engine/effects/raster/plan.h"
 #include "engine/plan/light_groups.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
@@ -82,18 +81,6 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     return status;
 }
 
-/// Decides whether triangles are scan-converted.
-static void choose_visibility(glint_plan *plan)
-{
-    const glint_visibility requested = plan->desc.visibility;
-    bool needs_index = false;
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        needs_index = needs_index || (plan->runs[id] && glint_stage_table[id]->walks);
-    plan->raster = plan->geometry->table.triangles > 0 && !plan->lens && requested != GLINT_VISIBILITY_CAST &&
-                   (requested == GLINT_VISIBILITY_SCAN || glint_raster_pays(plan, needs_index));
-    plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
-}
-
 /// Returns whether all light comes from the stages shade (with one call per sample) and vertex.
 static bool is_local(const glint_plan *plan)
 {
@@ -134,7 +121,9 @@ static void choose_stages(glint_plan *plan)
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         plan->runs[id] = glint_stage_table[id]->called(plan);
         plan->accumulate = plan->accumulate || (plan->runs[id] && glint_stage_table[id]->sums);
+        plan->walks = plan->walks || (plan->runs[id] && glint_stage_table[id]->walks);
     }
+    plan->needs_index = plan->walks || !plan->runs[GLINT_STAGE_RASTER] || glint_plan_cuts(plan);
     plan->local = is_local(plan);
     plan->together = shades_together(plan);
     list_steps(plan);
@@ -183,7 +172,6 @@ static glint_status fill(glint_plan *plan, const glint_plan_input *from, glint_e
     status = check_stages(plan, scene, error);
     if (status)
         return status;
-    choose_visibility(plan);
     plan->where = plan->geometry->where;
     status = glint_plan_keys(plan, error);
     return status ? status : glint_plan_explain(plan, scene, error);

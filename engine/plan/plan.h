@@ -199,8 +199,8 @@ struct glint_plan {
     glint_key output_key; ///< key of the conversion to pixel values
     /// Hash of the view, and of the lights' positions and colours: if it changes, few pixels stay the same
     glint_key setting_key;
-    bool raster; ///< whether triangles are found by projecting them instead of by casting rays
-    bool needs_index; ///< whether some stage traverses the BVH
+    bool walks; ///< whether some stage after `cast` traverses the BVH
+    bool needs_index; ///< whether any does
     bool accumulate; ///< whether light must be summed over samples or over chunks of lights
     bool local; ///< whether all light comes from the stages shade (with one call per sample) and vertex
     bool together; ///< whether all samples of a tile are shaded together, without sums

@@ -47,6 +47,8 @@ struct glint_tile_frame;
 struct glint_sample_walk;
 struct glint_plan_light;
 struct glint_light_args;
+struct glint_cast_args;
+struct glint_extent;
 
 /// One step of a stage in the walk of a tile. walk: the state of the current sample; NULL at times without a current
 /// sample.
@@ -95,6 +97,13 @@ typedef struct glint_stage {
     /// frame.
     glint_status (*render)(glint_renderer *renderer, const struct glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                            glint_error *error);
+    /// Prepares what tiles read of the stage, in renderer->own[id], before the tiles of a frame that needs the stage.
+    /// Geometry is placed. NULL: nothing
+    glint_status (*begin)(glint_renderer *renderer, struct glint_tile_frame *frame, glint_error *error);
+    void (*finish)(glint_renderer *renderer, const struct glint_tile_frame *frame,
+                   const struct glint_extent *extent); ///< changes the picture after its tiles. NULL: nothing
+    /// Frees renderer->own[id]: for a frame that does not need it, and in the end. NULL: there is nothing
+    void (*end)(glint_renderer *renderer);
     bool aside; ///< the stages after it read its inputs instead of its result, or neither
     bool per_light; ///< whether the stage runs once for each light
     bool walks; ///< whether the stage traverses the BVH
@@ -114,6 +123,10 @@ typedef struct glint_stage {
     /// Computes the normal of a surface that the stage shows where ray i hits nothing. NULL: the stage shows no
     /// surface.
     void (*normal)(const struct glint_tile *tile, const struct glint_tile_frame *frame, uint32_t i, double normal[3]);
+    /// Find the first hits in place of casting all primitives; glint_tile_frame names a stage that does. in_sight:
+    /// returns false if no ray of the tile hits anything.
+    bool (*in_sight)(const struct glint_tile *tile, const struct glint_tile_frame *frame);
+    void (*cast)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_cast_args *args);
     void *(*create)(const struct glint_plan *plan); ///< allocates the stage's memory for a worker; returns NULL when
         ///< out of memory. NULL: the stage needs no memory
     void (*destroy)(void *memory); ///< accepts NULL

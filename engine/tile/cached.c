@@ -39,7 +39,7 @@ bool glint_tile_may_gather(const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     if (!frame->base || !plan->local || plan->runs[GLINT_STAGE_PATTERN] || plan->camera.orthographic || plan->lens ||
-        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->raster)
+        plan->desc.passes & GLINT_LIGHT_PASSES || glint_tile_wants_coverage(plan) || frame->caster)
         return false;
     for (uint32_t i = 0; i < plan->light_count; i++)
         if (plan->lights[i].light_samples) // which sample is taken depends on the lane

@@ -51,8 +51,6 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = glint_tile_fit_stage(tile, plan, (glint_stage_id)id) && good;
     if (plan->is_base && !tile->differ)
         good = (tile->differ = glint_differ_work_create()) && good;
-    if (plan->raster && !tile->raster_rest)
-        good = (tile->raster_rest = glint_raster_rest_create()) && good;
     if (plan->together && !tile->samples)
         good = (tile->samples = glint_samples_create()) && good;
     if (plan->base && plan->local && !tile->gathered)
@@ -76,7 +74,6 @@ void glint_tile_destroy(glint_tile *tile)
         glint_tile_free_stage(tile, (glint_stage_id)id);
     glint_differ_work_destroy(tile->differ);
     glint_gathered_destroy(tile->gathered);
-    glint_raster_rest_destroy(tile->raster_rest);
     glint_samples_destroy(tile->samples);
     glint_pattern_destroy(tile->pattern);
     glint_group_sums_destroy(tile->group_sums);

@@ -93,8 +93,8 @@ static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint
 bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_cast_args args;
-    if (frame->raster)
-        return glint_tile_raster_in_sight(tile, frame);
+    if (frame->caster)
+        return frame->caster->in_sight(tile, frame);
     if (glint_tile_has_arrays(tile))
         return true;
     set_cast_args(tile, frame, &args);
@@ -120,8 +120,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
     glint_cast_args args;
     set_cast_args(tile, frame, &args);
-    if (frame->raster)
-        glint_tile_raster(tile, frame, &args);
+    if (frame->caster)
+        frame->caster->cast(tile, frame, &args);
     else if (glint_tile_has_arrays(tile))
         stages->cast_rays(&args);
     else

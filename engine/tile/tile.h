@@ -6,9 +6,7 @@
 #include "engine/film/tone.h"
 #include "engine/plan/plan.h"
 #include "engine/reuse/reuse.h"
-#include "engine/effects/raster/plan.h"
 #include "engine/effects/adaptive/refine.h"
-#include "engine/effects/vertex_shading/shading_points.h"
 
 #include <string.h>
 
@@ -79,9 +77,8 @@ typedef struct glint_tile_frame {
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is cancelled and may be left unfinished
     bool time_stages, count_work;
-    glint_shading_points_cached *shading_points; ///< for the stage vertex
-    const glint_raster *raster; ///< NULL: everything is cast
-    const struct glint_tints *tints; ///< transparent primitives, in frames with tinted shadows; otherwise NULL
+    void *const *own; ///< what tiles read of each stage that has `begin`
+    const glint_stage *caster; ///< the stage that finds the first hits; NULL: rays are cast
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not cached.
@@ -183,8 +180,6 @@ typedef struct glint_tile {
     struct glint_samples *samples; ///< memory of tile/shade.c; NULL until a frame needs it
     uint32_t own_lights; ///< index of the current sample's first element in `lights`
     const struct glint_batch *batch; ///< the batch whose rays hit the samples; NULL: rays of the eye
-    struct glint_raster_rest *raster_rest; ///< effects/raster/raster.c: hits of primitives other than triangles; NULL
-        ///< until a frame needs it
     struct glint_gathered *gathered; ///< memory of effects/adaptive/gather.c; NULL until a frame is adaptive
     struct glint_differ_work *differ; ///< memory of effects/adaptive/differ.c; NULL until a frame is a base
     uint64_t clock; ///< end time of the last timed stage, ns
@@ -561,13 +556,6 @@ bool glint_tile_has_shading_points(const glint_tile *tile);
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 /// Adds the light of faces and vertices to the given sums: diffuse and specular.
 void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES]);
-
-/// effects/raster/raster.c: scan conversion.
-struct glint_raster_rest *glint_raster_rest_create(void);
-void glint_raster_rest_destroy(struct glint_raster_rest *rest);
-bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
-/// Finds the first hits by scan conversion. args: as for casting all primitives.
-void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
 /// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters. At the first
 /// call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose

@@ -3,11 +3,12 @@
 /// effects/vertex_shading/vertex.c.
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
+#include "engine/effects/vertex_shading/shading_points.h"
 
 /// Returns the cached values of a face or vertex: its light, then its slopes for each derivative.
 static double *stored_slopes(const glint_tile_frame *frame, uint32_t side, uint32_t number)
 {
-    const glint_shading_points_cached *all = frame->shading_points;
+    const glint_shading_points_cached *all = glint_shading_points_of(frame);
     return all->slopes + ((size_t)side * all->blocks * GLINT_SHADING_POINT_BLOCK + number) * 3 * (all->slope_count + 1);
 }
 

@@ -1,4 +1,5 @@
 #include "engine/effects/light_groups/light_groups.h"
+#include "engine/effects/vertex_shading/shading_points.h"
 #include "engine/base/alloc.h"
 
 #include <float.h>
@@ -225,8 +226,8 @@ void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
 /// Returns the cached light of `group` for the faces and vertices of both sides. The picture's own light comes first.
 static glint_shading_point_light *stored_light(const glint_tile_frame *frame, uint32_t group)
 {
-    const size_t each = 2 * (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
-    return frame->shading_points->light + (group + 1) * each;
+    const size_t each = 2 * (size_t)glint_shading_points_of(frame)->blocks * GLINT_SHADING_POINT_BLOCK;
+    return glint_shading_points_of(frame)->light + (group + 1) * each;
 }
 
 void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
@@ -244,7 +245,7 @@ void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, 
 {
     for (uint32_t g = 0; frame->plan->light_groups && g < frame->plan->light_groups->count; g++) {
         args->light[0] = stored_light(frame, g);
-        args->light[1] = args->light[0] + (size_t)frame->shading_points->blocks * GLINT_SHADING_POINT_BLOCK;
+        args->light[1] = args->light[0] + (size_t)glint_shading_points_of(frame)->blocks * GLINT_SHADING_POINT_BLOCK;
         for (int term = 0; term < 2; term++)
             for (int c = 0; c < 3; c++)
                 args->sum[term][c] = args->sum[term][c] ? tile->group_sums->sum[g][term][c] : NULL;

@@ -1,5 +1,21 @@
-#include "engine/effects/outline/outline.h"
+/// The pass `outline`: 1 where a line is drawn, otherwise 0; computed from the finished planes depth, normal and
+/// object_id.
+///
+/// There is an edge between two adjacent pixels if one hits nothing, if they show different objects, or if no single
+/// smooth surface contains both their points P, Q with their normals m, n. With e = (Q - P) / |Q - P|: on an arc, e.m
+/// and -e.n are the sine of half the angle between the normals. If the larger of e.m and -e.n is positive, the
+/// surface bends towards the eye, or one point hides in front of the other: an edge above VALLEY. If it
+/// is negative, the surface bends away: an edge above RIDGE, as smaller values could also be a small
+/// ball. If m.n is above SMOOTH, the surface may be a mesh whose interpolated normals are far from the
+/// geometric ones, and STEP is needed: one surface behind the other. The line is one pixel wide, on the
+/// nearer side.
 #include "engine/base/vec.h"
+#include "engine/frame/renderer.h"
+
+#define VALLEY 0.25 ///< sine of half of 29 degrees
+#define RIDGE 0.45 ///< sine of half of 53 degrees
+#define SMOOTH 0.95 ///< cosine of 18 degrees
+#define STEP 0.7 ///< sine of 44 degrees
 
 typedef struct outliner {
     const glint_plan *plan;
@@ -42,9 +58,9 @@ static bool is_break(const point *p, const point *q)
     vec_sub(e, q->position, p->position);
     const double length = sqrt(vec_dot(e, e));
     const double up = vec_dot(e, p->normal), down = -vec_dot(e, q->normal);
-    if (vec_dot(p->normal, q->normal) > GLINT_OUTLINE_SMOOTH)
-        return fmax(up, down) > GLINT_OUTLINE_STEP * length;
-    return fmax(up, down) > GLINT_OUTLINE_VALLEY * length || fmin(up, down) < -GLINT_OUTLINE_RIDGE * length;
+    if (vec_dot(p->normal, q->normal) > SMOOTH)
+        return fmax(up, down) > STEP * length;
+    return fmax(up, down) > VALLEY * length || fmin(up, down) < -RIDGE * length;
 }
 
 /// Returns whether the pixel p, a hit, gets a line because of an edge between p and the pixel at x, y.
@@ -75,11 +91,11 @@ static void draw_row(void *context, size_t index, int worker)
     }
 }
 
-void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_pool *pool, glint_image *image)
+static void finish(glint_renderer *renderer, const glint_tile_frame *frame, const glint_extent *extent)
 {
-    outliner o = { .plan = plan, .extent = *extent, .image = image };
-    glint_plan_centre_offset(plan, o.offset);
-    glint_pool_run(pool, (size_t)extent->height, draw_row, &o);
+    outliner o = { .plan = frame->plan, .extent = *extent, .image = frame->image };
+    glint_plan_centre_offset(frame->plan, o.offset);
+    glint_pool_run(renderer->pool, (size_t)extent->height, draw_row, &o);
 }
 
 static bool called(const glint_plan *plan) { return plan->desc.passes >> GLINT_PASS_OUTLINE & 1; }
@@ -89,4 +105,5 @@ const glint_stage glint_stage_outline = {
     .name = "outline",
     .doc = "lines where depth, normal or object changes",
     .called = called,
+    .finish = finish,
 };

@@ -326,6 +326,7 @@ glint_status glint_raster_begin(glint_raster *raster, const glint_plan *plan, co
     s.across = (width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     s.tile_count = (size_t)s.across * ((height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT);
     s.chunk_count = (geometry->prim_count + CHUNK - 1) / CHUNK;
+    raster->on = false;
     glint_status status = glint_geometry_others(plan->geometry, pool, &raster->others, &raster->rest, error);
     if (status || s.tile_count > COUNTS_MAX / (s.chunk_count + 1))
         return status;
@@ -397,7 +398,8 @@ static outlook survey(const glint_plan *plan)
     return out;
 }
 
-bool glint_raster_pays(const glint_plan *plan, bool needs_index)
+/// Returns whether scanning is likely to be faster than casting.
+static bool pays(const glint_plan *plan)
 {
     const glint_geometry *geometry = plan->geometry;
     const outlook known = survey(plan);
@@ -405,7 +407,14 @@ bool glint_raster_pays(const glint_plan *plan, bool needs_index)
     const double pixels = plan->desc.width * plan->desc.height * samples;
     const double raster = triangles * PROJECT_NS + (known.alone ? 0 : pixels * MERGE_NS);
     double cast = pixels * PIXEL_NS + samples * VISIT_NS * triangles * known.in_view;
-    if (!needs_index && !known.indexed && atomic_load(&geometry->index->frames_without) < FRAMES_WITHOUT)
+    if (!plan->walks && !known.indexed && atomic_load(&geometry->index->frames_without) < FRAMES_WITHOUT)
         cast += BUILD_NS * triangles;
     return cast > raster;
+}
+
+bool glint_raster_is_called(const glint_plan *plan)
+{
+    const glint_visibility requested = plan->desc.visibility;
+    return plan->geometry->table.triangles > 0 && !plan->lens && requested != GLINT_VISIBILITY_CAST &&
+           (requested == GLINT_VISIBILITY_SCAN || pays(plan));
 }

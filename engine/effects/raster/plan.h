@@ -10,7 +10,6 @@
 /// A frame's tiles and their triangles; the renderer keeps it to reuse its memory.
 typedef struct glint_raster {
     bool on; ///< for this frame
-    double ms; ///< time of finding the entries
     bool rest; ///< other primitives must be cast as well
     glint_geometry_table others; ///< the other primitives, with their own index
     size_t tile_count, tile_capacity, entry_capacity;
@@ -18,11 +17,11 @@ typedef struct glint_raster {
     glint_raster_entry *entries; ///< tile after tile, the nearer first
 } glint_raster;
 
-/// Called before a frame. If there are too many entries, `on` stays false, and the frame must be cast.
+/// Finds the entries before a frame. If there are too many entries, `on` stays false, and the frame must be cast.
 glint_status glint_raster_begin(glint_raster *raster, const glint_plan *plan, const glint_geometry_table *geometry,
                                 glint_pool *pool, glint_error *error);
 void glint_raster_clear(glint_raster *raster);
-/// Returns whether scanning is likely to be faster than casting; needs_index: other stages of the plan traverse it.
-bool glint_raster_pays(const glint_plan *plan, bool needs_index);
+/// Returns whether the frame's triangles are scan-converted, when all other stages are chosen.
+bool glint_raster_is_called(const glint_plan *plan);
 
 #endif

@@ -6,7 +6,9 @@
 /// that certainly miss all transparent objects are not followed (plan.h). The other rays, of all samples of a light,
 /// are packed into full groups, as many as fit, and packed again after each surface.
 #include "engine/base/alloc.h"
+#include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/frame/renderer.h"
 #include "engine/tile/batch.h"
 #include "engine/effects/cut_out/cut_out.h"
 #include "engine/effects/transparent_shadow/plan.h"
@@ -145,7 +147,7 @@ static bool ball_around(const glint_tile *tile, glint_ball *ball)
 static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                         const uint16_t *lanes, uint16_t *tinted)
 {
-    const glint_tints *tints = frame->tints;
+    const glint_tints *tints = frame->own[GLINT_STAGE_TINT];
     const glint_tint_light seen = light_seen(tile, light);
     uint16_t chosen[GLINT_TINTS_MAX];
     glint_ball ball;
@@ -599,6 +601,17 @@ void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *fr
 
 static bool called(const glint_plan *plan) { return plan->tints; }
 
+static glint_status begin_frame(glint_renderer *renderer, glint_tile_frame *frame, glint_error *error)
+{
+    glint_tints *tints = renderer->own[GLINT_STAGE_TINT];
+    if (!tints && !(tints = renderer->own[GLINT_STAGE_TINT] = malloc(sizeof *tints)))
+        return glint_fail_nomem(error);
+    glint_tints_find(tints, frame->plan, &frame->geometry);
+    return GLINT_OK;
+}
+
+static void end(glint_renderer *renderer) { free(renderer->own[GLINT_STAGE_TINT]); }
+
 /// Adds the light of a chunk of lights through transparent objects.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
@@ -611,6 +624,8 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 /// Runs as a part of the stages occlude and shade.
 const glint_stage glint_stage_tint = {
     .called = called,
+    .begin = begin_frame,
+    .end = end,
     .normals = true,
     .step[GLINT_AT_SHADED] = add,
     .create = create,

@@ -6,8 +6,7 @@
 #ifndef GLINT_SHADING_POINTS_H
 #define GLINT_SHADING_POINTS_H
 
-#include "engine/plan/plan.h"
-#include "engine/reuse/reuse.h"
+#include "engine/tile/tile.h"
 
 #include <stdatomic.h>
 
@@ -19,7 +18,6 @@ typedef enum glint_block_state { GLINT_BLOCK_NONE, GLINT_BLOCK_CLAIMED, GLINT_BL
 typedef struct glint_shading_points_cached {
     glint_key key; ///< key of the contents; all zero: empty
     uint32_t blocks; ///< blocks of one side; the blocks of backs follow those of fronts
-    uint32_t ready; ///< blocks computed before this frame
     glint_shading_point_light *light; ///< light of fronts, then backs; then both for each light group
     size_t group_count; ///< of light passes
     double *slopes; ///< for each point its light (three numbers) and three slopes for each derivative; NULL: no
@@ -29,9 +27,13 @@ typedef struct glint_shading_points_cached {
     size_t reserved; ///< bytes reserved in the budget
 } glint_shading_points_cached;
 
-/// Prepares for a frame: reuses the cached light if its key is the plan's, otherwise allocates memory.
-glint_status glint_shading_points_begin(glint_shading_points_cached *shading_points, const glint_plan *plan,
-                                        glint_reuse *reuse, glint_error *error);
-void glint_shading_points_clear(glint_shading_points_cached *shading_points, glint_reuse *reuse);
+/// As glint_stage.begin and end: reuse the cached light if its key is the plan's, otherwise allocate memory.
+glint_status glint_shading_points_begin(glint_renderer *renderer, glint_tile_frame *frame, glint_error *error);
+void glint_shading_points_end(glint_renderer *renderer);
+
+static inline glint_shading_points_cached *glint_shading_points_of(const glint_tile_frame *frame)
+{
+    return frame->own[GLINT_STAGE_VERTEX];
+}
 
 #endif

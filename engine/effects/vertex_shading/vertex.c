@@ -228,7 +228,7 @@ static void prefetch_prim(const glint_geometry *geometry, uint32_t number)
 static void load_block(struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
     glint_tile *tile = &vertex->batch.tile;
-    const uint32_t blocks = frame->shading_points->blocks;
+    const uint32_t blocks = glint_shading_points_of(frame)->blocks;
     const bool back = block >= blocks;
     const uint32_t first = (back ? block - blocks : block) * GLINT_SHADING_POINT_BLOCK;
     const uint32_t remaining = frame->geometry.shading_point_count - first;
@@ -255,7 +255,7 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
 static void store_block(const struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
     const glint_tile *tile = &vertex->batch.tile;
-    glint_shading_point_light *light = frame->shading_points->light + (size_t)block * GLINT_SHADING_POINT_BLOCK;
+    glint_shading_point_light *light = glint_shading_points_of(frame)->light + (size_t)block * GLINT_SHADING_POINT_BLOCK;
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++)
         for (int term = 0; term < 2; term++)
             for (int c = 0; c < 3; c++)
@@ -290,19 +290,19 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 /// Computes a block unless another worker has begun it. Returns whether the block is ready.
 static bool request_block(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
-    unsigned char state = atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire);
+    unsigned char state = atomic_load_explicit(&glint_shading_points_of(frame)->state[block], memory_order_acquire);
     if (state != GLINT_BLOCK_NONE ||
-        !atomic_compare_exchange_strong(&frame->shading_points->state[block], &state, GLINT_BLOCK_CLAIMED))
+        !atomic_compare_exchange_strong(&glint_shading_points_of(frame)->state[block], &state, GLINT_BLOCK_CLAIMED))
         return state == GLINT_BLOCK_DONE;
     work_out(tile, frame, block);
-    atomic_store_explicit(&frame->shading_points->state[block], GLINT_BLOCK_DONE, memory_order_release);
+    atomic_store_explicit(&glint_shading_points_of(frame)->state[block], GLINT_BLOCK_DONE, memory_order_release);
     return true;
 }
 
 static bool wait_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     (void)tile;
-    while (atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire) != GLINT_BLOCK_DONE)
+    while (atomic_load_explicit(&glint_shading_points_of(frame)->state[block], memory_order_acquire) != GLINT_BLOCK_DONE)
         sched_yield();
     return true;
 }
@@ -324,7 +324,7 @@ static inline bool each_block(glint_tile *tile, const glint_tile_frame *frame,
             const uint32_t *at = frame->geometry.shading_points[frame->geometry.prims[prim].shading_points].at;
             for (int j = 0; j < 3; j++)
                 if (j == 0 || at[j] / GLINT_SHADING_POINT_BLOCK != at[j - 1] / GLINT_SHADING_POINT_BLOCK)
-                    done &= act(tile, frame, side * frame->shading_points->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
+                    done &= act(tile, frame, side * glint_shading_points_of(frame)->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
             last = prim;
             last_side = side;
         }
@@ -370,7 +370,7 @@ bool glint_tile_has_shading_points(const glint_tile *tile)
 static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
 {
     const glint_plan *plan = frame->plan;
-    const glint_shading_points_cached *shading_points = frame->shading_points;
+    const glint_shading_points_cached *shading_points = glint_shading_points_of(frame);
     glint_vertex_args args = { .group_count = tile->group_count,
                                .wanted = own_of(tile)->wanted,
                                .back = tile->hit.back,
@@ -434,6 +434,8 @@ const glint_stage glint_stage_vertex = {
     .name = "vertex",
     .doc = "light computed once for each face or vertex",
     .called = called,
+    .begin = glint_shading_points_begin,
+    .end = glint_shading_points_end,
     .reads = GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS),
     .sums = true,
     .step = { [GLINT_AT_SIGHT] = choose, [GLINT_AT_REST] = add },
