@@ -53,8 +53,9 @@ STRICT := -std=c11 $(FEATURES) $(WARN) $(if $(WASM),,-fPIC) -fvisibility=hidden 
 LINUX  := $(findstring linux,$(TARGET))
 MACOS  := $(findstring darwin,$(TARGET))
 LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
-LINK_COMMAND := $(if $(MACOS),,-Wl$(comma)-E)
-LINK_MODULE  := $(if $(MACOS),-bundle -undefined dynamic_lookup,-shared)
+LINK_PRIVATE := $(if $(MACOS),,-Wl$(comma)--exclude-libs$(comma)libglint.a)
+LINK_COMMAND := $(if $(MACOS),,-Wl$(comma)-E $(LINK_PRIVATE))
+LINK_MODULE  := $(if $(MACOS),-bundle -undefined dynamic_lookup,-shared $(LINK_PRIVATE))
 LINK_SHARED   = $(if $(MACOS),-dynamiclib -Wl$(comma)-install_name$(comma)$(libdir)/$(SONAME) -Wl$(comma)-exported_symbols_list,-shared \
                   -Wl$(comma)-soname$(comma)$(SONAME) $(if $(LINUX),-Wl$(comma)-z$(comma)defs) -Wl$(comma)--version-script)
 LIB_DL       := $(if $(LINUX),-ldl)
@@ -214,19 +215,18 @@ endef
 $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$(real),$(isa),-DGLINT_REAL=$(real)))) \
     $(eval $(call stage_rule,$(isa),$(isa),$(NO_FLOAT))))
 $(KERNELS:%=$(BUILD)/engine/stages/simd/table.%.o): $(BUILD)/kernels
-# Some sources need flags of their own. objects_of returns their objects, for the archive and for the shared library.
-objects_of = $(foreach source,$(1),$(source:%.c=$(BUILD)/%.o) $(source:%.c=$(BUILD)/shared/%.o))
+# Some sources need flags of their own.
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
               indirect/begin.c indirect/indirect.c light_groups/light_groups.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
               transparent_shadow/transparent_shadow.c))
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
-$(call objects_of,$(UNROLLED)): OWN := $(KERNEL_CFLAGS)
-$(call objects_of,engine/stages/simd/select.c): OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
-$(call objects_of,engine/stages/simd/select.c): $(BUILD)/kernels
-$(call objects_of,engine/text/letters.c): OWN := $(FONT_CFLAGS)
-$(call objects_of,engine/file/pdf.c): OWN := $(CAIRO_CFLAGS)
-$(call objects_of,engine/file/jpeg.c): OWN := $(JPEG_CFLAGS)
+$(UNROLLED:%.c=$(BUILD)/%.o): OWN := $(KERNEL_CFLAGS)
+$(BUILD)/engine/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
+$(BUILD)/engine/stages/simd/select.o: $(BUILD)/kernels
+$(BUILD)/engine/text/letters.o: OWN := $(FONT_CFLAGS)
+$(BUILD)/engine/file/pdf.o: OWN := $(CAIRO_CFLAGS)
+$(BUILD)/engine/file/jpeg.o: OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
@@ -251,7 +251,7 @@ $(BUILD)/bindings/web/web.o: | $(BUILD)/bindings/web/library.h
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) $(ISA) $(OWN) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) -fno-semantic-interposition $(ISA) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -267,17 +267,11 @@ $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	$(Q)$(AR) qcs $@ $(ENGINE_OBJ) # q: sources of two folders may have one name
 
 # The shared library: its name includes the ABI version (for its guarantees see engine/README.md), it exports the
-# symbols of glint.h. The kernels' objects are shared with the static library; none of their symbols is visible.
+# symbols of glint.h.
 ABI        := $(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
 shared_name = $(if $(MACOS),libglint$(1:%=.%).dylib,libglint.so$(1:%=.%))
 SHARED     := $(call shared_name,$(VERSION))
 SONAME     := $(call shared_name,$(ABI))
-SHARED_OBJ := $(KERNEL_OBJ) $(patsubst $(BUILD)/%,$(BUILD)/shared/%,$(filter-out $(KERNEL_OBJ),$(ENGINE_OBJ)))
-
-$(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
-	@mkdir -p $(@D)
-	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(HARDEN) $(OWN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
 
 # The list of exported symbols: a version script, or for Apple's linker a list of names.
 $(BUILD)/libglint.map: engine/glint.h
@@ -285,9 +279,9 @@ $(BUILD)/libglint.map: engine/glint.h
 	@sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/\1/p' $< | sort -u | $(if $(MACOS),sed 's/^/_/', \
 	    { echo 'GLINT_$(ABI) {'; echo '  global:'; sed 's/.*/    &;/'; echo '  local: *;'; echo '};'; }) > $@
 
-$(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
+$(BUILD)/$(SHARED): $(ENGINE_OBJ) $(BUILD)/libglint.map
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) $(LINK_SHARED),$(BUILD)/libglint.map $(SHARED_OBJ) $(LIBS) -o $@
+	$(Q)$(CC) $(LINK) $(LINK_SHARED),$(BUILD)/libglint.map $(ENGINE_OBJ) $(LIBS) -o $@
 
 .PHONY: shared
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
@@ -303,7 +297,7 @@ $(BUILD)/flags $(BUILD)/kernels: FORCE
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(SHARED_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # ---- Tests ----
 

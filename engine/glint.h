@@ -26,6 +26,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#pragma GCC visibility push(default)
 
 #define GLINT_VERSION "0.2.0"
 
@@ -1933,6 +1934,7 @@ double glint_pow(double x, double y);
 double glint_srgb_encode(double linear); ///< IEC 61966-2-1:1999; input clamped to 0 .. 1, NaN gives 0
 double glint_srgb_decode(double encoded); ///< the inverse; input clamped to 0 .. 1
 
+#pragma GCC visibility pop
 #ifdef __cplusplus
 }
 #endif
