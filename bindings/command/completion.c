@@ -117,11 +117,11 @@ static void print_bash(FILE *out)
 
 // ---- zsh ----
 
-// Prints help within single quotes, without ':' and brackets, which would end a part of the line.
+// Prints help within single quotes. A ':' or bracket would end a part of the line.
 static void print_zsh_help(FILE *out, const char *help)
 {
     for (; *help; help++)
-        fprintf(out, strchr(":[]", *help) ? "\\%c" : "%c", *help);
+        fprintf(out, *help == '\'' ? "'\\%c'" : strchr(":[]", *help) ? "\\%c" : "%c", *help);
 }
 
 static void print_zsh_option(FILE *out, const cli_option *option)
@@ -195,7 +195,10 @@ static void print_fish_option(FILE *out, const cli_option *option)
         print_choices(out, option);
         fputs("'", out);
     }
-    fprintf(out, " -d '%s'\n", option->help);
+    fputs(" -d '", out);
+    for (const char *at = option->help; *at; at++)
+        fprintf(out, *at == '\'' ? "\\%c" : "%c", *at);
+    fputs("'\n", out);
 }
 
 static void print_fish(FILE *out)

@@ -6,6 +6,7 @@
 for shell in bash zsh fish; do
     check "glint completion $shell" "$glint" completion $shell
     "$glint" completion $shell >"$work/$shell"
+    check "$shell: quotes in help are escaped" eval '! grep -q "[a-z]'"'"'[a-z]" "$work/$shell"'
 done
 "$glint" completion ksh >"$work/log" 2>&1
 check "an unknown shell is an error" test $? -eq 2
