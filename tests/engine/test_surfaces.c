@@ -337,7 +337,7 @@ static void no_cracks(void **unused)
             eye[c] += offset;
         glint_scene *scene = new_scene(eye, (double[3]) { 9, 9, 9 }, 1, eye, true);
         add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
-        for (int k = 0; k < 3000; k++) {
+        for (int k = 0; k < 3000; k += (int)case_step()) {
             const size_t face = below((uint32_t)s.face_count);
             const double *a = s.vertices[s.corners[4 * face + below(4)]];
             const uint32_t turn = below(4);
@@ -363,7 +363,7 @@ static void no_light_by_an_edge(void **unused)
 {
     static soup s;
     (void)unused;
-    for (uint64_t seed = 1; seed <= 40; seed++) {
+    for (uint64_t seed = 1; seed <= 40; seed += case_step()) {
         random_state = seed;
         double m[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, light[3];
         const double eye[3] = { 0, 0, 0 }, at[3] = { 0, 0, -1 };
@@ -399,7 +399,7 @@ static void no_acne(void **unused)
 {
     static soup s;
     (void)unused;
-    for (uint64_t seed = 1; seed <= 40; seed++) {
+    for (uint64_t seed = 1; seed <= 40; seed += case_step()) {
         enum { SIDE = 24 };
         random_state = seed;
         double m[3][3], eye[3], at[3], light[3], low = pow(10, between(-5, 0.5)), offset = below(2) ? 0 : 1e5;
@@ -477,7 +477,7 @@ static void triangles_against_oracle(void **unused)
     int hits = 0;
     (void)unused;
     random_state = 7;
-    for (int k = 0; k < 20000; k++) {
+    for (int k = 0; k < 20000; k += (int)case_step()) {
         double o[3], d[3], scale = pow(10, between(-6, 6));
         make_soup(&s, 1);
         for (int i = 0; i < 9; i++)
@@ -522,7 +522,7 @@ static void triangles_against_oracle(void **unused)
         for (int c = 0; c < 3; c++)
             assert_true(fabs(got.normal[c] - (double)(n[c] / length)) <= 16 * DBL_EPSILON / thin);
     }
-    assert_true(hits > 5000);
+    assert_true(hits * (int)case_step() > 5000);
 }
 
 /// Returns how far a point is outside its shape, in units of the unit shape. *bound gets the bound that is exceeded.
@@ -602,7 +602,7 @@ static void solids_against_oracle(void **unused)
                                               GLINT_SHAPE_CONE, GLINT_SHAPE_TORUS };
     int hits = 0;
     (void)unused;
-    for (int n = 0; n < 4000; n++) {
+    for (int n = 0; n < 4000; n += (int)case_step()) {
         random_state = (uint64_t)n;
         glint_shape *shape = random_solid(kinds[n % 5], true);
         const glint_shape_desc d = *glint_shape_get(shape);
@@ -654,7 +654,7 @@ static void solids_against_oracle(void **unused)
         }
         glint_scene_release(scene);
     }
-    assert_true(hits > 1000);
+    assert_true(hits * (int)case_step() > 1000);
 }
 
 // ---- Groups ----

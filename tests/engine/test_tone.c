@@ -132,7 +132,7 @@ static void test_tone_cases(void **state)
     (void)state;
     static tone_case c;
     static tone_result want, got;
-    for (uint32_t seed = 0; seed < CASES; seed++) {
+    for (uint32_t seed = 0; seed < CASES; seed += case_step()) {
         random_state = seed;
         make_case(&c);
         run_case(&c, &glint_stages_ref, &want);
@@ -151,7 +151,7 @@ static void test_tone_reference(void **state)
     (void)state;
     static tone_case c;
     static tone_result got;
-    for (uint32_t seed = 0; seed < CASES / 10; seed++) {
+    for (uint32_t seed = 0; seed < CASES / 10; seed += case_step()) {
         random_state = seed;
         make_case(&c);
         const glint_tone_table *table = tone_of((int)(seed % 12));
