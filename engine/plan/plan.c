@@ -108,6 +108,9 @@ static void list_steps(glint_plan *plan)
             plan->steps[time] |= (uint32_t)(plan->runs[id] && stage->step[time]) << id;
         plan->limits |= (uint32_t)(plan->runs[id] && stage->limit) << id;
         plan->admits |= (uint32_t)(plan->runs[id] && stage->admit) << id;
+        plan->singles |= (uint32_t)(plan->runs[id] && stage->singles) << id;
+        plan->before_shade |= (uint32_t)(plan->runs[id] && stage->before_shade) << id;
+        plan->after_shade |= (uint32_t)(plan->runs[id] && stage->after_shade) << id;
         plan->reads_normals = plan->reads_normals || (plan->runs[id] && stage->normals);
     }
 }

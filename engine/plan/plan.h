@@ -188,7 +188,8 @@ struct glint_plan {
     bool runs[GLINT_STAGE_COUNT];
     void *own[GLINT_STAGE_COUNT]; ///< what only this stage reads, see glint_stage; owned
     uint32_t steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages that have a step then, one bit each
-    uint32_t limits, admits; ///< the stages that have the functions `limit` and `admit`, one bit each
+    uint32_t limits, admits, singles; ///< the stages that have the functions `limit`, `admit` and `singles`, one bit each
+    uint32_t before_shade, after_shade; ///< those that have these functions
     bool reads_normals; ///< whether some stage is likely to read normals
     glint_key where; ///< hash of the geometry's positions
     glint_key keys[GLINT_STAGE_COUNT];

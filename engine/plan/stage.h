@@ -48,6 +48,8 @@ struct glint_sample_walk;
 struct glint_plan_light;
 struct glint_light_args;
 struct glint_cast_args;
+struct glint_shade_args;
+struct glint_shade_light;
 struct glint_extent;
 
 /// One step of a stage in the walk of a tile. walk: the state of the current sample; NULL at times without a current
@@ -116,6 +118,18 @@ typedef struct glint_stage {
     glint_stage_step *step[GLINT_TIME_COUNT]; ///< NULL: nothing to do at that time
     /// After the stage light: removes lanes from those above the light's horizon. NULL: none.
     void (*limit)(struct glint_tile *tile, const struct glint_plan *plan, const struct glint_light_args *args);
+    /// Called before a call of the stage shade for `count` lights of the plan from `from` on, also for secondary rays:
+    /// changes its arguments. lights: those of `args`. NULL: none.
+    void (*before_shade)(struct glint_tile *tile, const struct glint_tile_frame *frame, struct glint_shade_args *args,
+                         struct glint_shade_light *lights, uint32_t from, uint32_t count);
+    /// Called after it: adds light. NULL: none.
+    void (*after_shade)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_shade_args *args,
+                        uint32_t from, uint32_t count);
+    /// Returns whether the stage changes the light of a tile's only sample beyond its call of shade. any: something is
+    /// hit. Materials and shadows are known. NULL: no; stages that scale light always do.
+    bool (*adds)(const struct glint_tile *tile, const struct glint_tile_frame *frame, bool any);
+    /// Returns whether the stage reads single samples of an area light at the tile's points. NULL: no.
+    bool (*singles)(const struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_plan_light *light);
     /// Called after the stage occlude, which tested the lanes in `lit`: adds lanes to `unoccluded`. middle: the lanes
     /// are for the whole light, tested at its centre. NULL: none.
     void (*admit)(struct glint_tile *tile, const struct glint_tile_frame *frame, const struct glint_plan_light *light, bool middle,

@@ -30,7 +30,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     batch->ordered = batch->distances = false;
     batch->by_lane = has_area_light(frame->plan);
     tile->batch = batch;
-    tile->group_sums = glint_group_sums_of(to, walk == GLINT_WALK_SHADING_POINTS);
+    tile->own[GLINT_STAGE_LIGHT_GROUPS] = glint_group_sums_of(to, walk == GLINT_WALK_SHADING_POINTS);
     tile->shadow_scratch = to->shadow_scratch;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };

@@ -2,7 +2,6 @@
 /// later ones.
 #include "engine/base/alloc.h"
 #include "engine/effects/pattern/pattern.h"
-#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 
@@ -57,12 +56,6 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->gathered = glint_gathered_create()) && good;
     if (has_soft_shadows(plan) && !tile->shadow_scratch)
         good = (tile->shadow_scratch = glint_alloc_large(1, GLINT_OCCLUDE_SCRATCH)) && good;
-    if (!glint_group_sums_fit(tile->group_sums, plan)) {
-        glint_group_sums_destroy(tile->group_sums);
-        tile->group_sums = NULL;
-    }
-    if (plan->light_groups && !tile->group_sums)
-        good = (tile->group_sums = glint_group_sums_create(plan)) && good;
     return fit_pattern(tile, plan) && good;
 }
 
@@ -76,7 +69,6 @@ void glint_tile_destroy(glint_tile *tile)
     glint_gathered_destroy(tile->gathered);
     glint_samples_destroy(tile->samples);
     glint_pattern_destroy(tile->pattern);
-    glint_group_sums_destroy(tile->group_sums);
     free(tile->shadow_scratch);
     free(tile);
 }

@@ -3,7 +3,6 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/pattern/pattern.h"
-#include "engine/effects/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,22 +76,16 @@ static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_
     glint_tile_shader(tile, frame, seen, count);
 }
 
-bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
+bool glint_tile_adds_anywhere(const glint_tile *tile, const glint_tile_frame *frame, bool any)
 {
-    const glint_bounce_material *materials = frame->plan->bouncing;
-    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the previous lane
-    if (tile->at.only) {
-        const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
-        return glint_sends_on(only);
-    }
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
-            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
-            if (material != last && glint_sends_on(&materials[material]))
-                return true;
-            last = material;
-        }
-    return false;
+    (void)tile, (void)frame, (void)any;
+    return true;
+}
+
+bool glint_tile_adds_to_hits(const glint_tile *tile, const glint_tile_frame *frame, bool any)
+{
+    (void)tile, (void)frame;
+    return any;
 }
 
 /// Returns whether one call of shade computes all light of the tile's only sample: no visible material needs
@@ -100,19 +93,15 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
 static bool is_direct(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        if (plan->runs[id] && glint_stage_table[id]->scales)
+    const bool any = glint_has_lanes(tile->at.hits, tile->group_count);
+    if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK)
+        return false;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        const glint_stage *stage = glint_stage_table[id];
+        if (plan->runs[id] && (stage->scales || (stage->adds && stage->adds(tile, frame, any))))
             return false;
-    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] || plan->runs[GLINT_STAGE_ENVIRONMENT] || plan->runs[GLINT_STAGE_SHADER])
-        return false;
-    if (!plan->accumulate || plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK || plan->derivatives ||
-        plan->light_groups)
-        return false;
-    if (!glint_has_lanes(tile->at.hits, tile->group_count))
-        return true;
-    return !(plan->dims || plan->runs[GLINT_STAGE_INDIRECT] || plan->runs[GLINT_STAGE_VERTEX] ||
-             (plan->runs[GLINT_STAGE_BOUNCE] && glint_tile_sends_on(tile, frame)) ||
-             (plan->tints && glint_tile_is_shadowed(tile, plan, 0, plan->light_count)));
+    }
+    return true;
 }
 
 /// Called before the first call of shade for the eye's hits: clears the sums, if they are used.
@@ -129,35 +118,21 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 {
     const glint_plan *plan = frame->plan;
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
-    uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unlit[GLINT_TILE_GROUPS];
     glint_shade_planes planes;
     if (!tile->batch && tile->sample == 0 && from == 0)
         begin_sums(tile, frame);
-    if (from == 0 && (tile->batch || tile->sample == 0))
-        glint_groups_begin(tile, plan);
     glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights, &planes);
-    const bool dims = plan->dims && count > 0 && glint_tile_find_dim(tile, frame);
-    for (uint32_t i = 0; i < count && dims; i++) { // no light is summed
-        if (!plan->lights[from + i].shadows)
-            continue;
-        for (uint32_t g = 0; g < tile->group_count; g++)
-            whole[i][g] = lights[i].lit[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
-        lights[i].lit = whole[i];
-    }
-    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
-        args.active = glint_tile_unlit_lanes(tile, unlit);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3; c++)
             args.sum[k][c] = plan->accumulate && !tile->direct ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
+    for (uint32_t bits = plan->before_shade; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctz(bits)]->before_shade(tile, frame, &args, lights, from, count);
     if (count > 0 && plan->runs[GLINT_STAGE_SHADER] && glint_tile_shows_shader(tile, plan)) // then no light is summed
         run_shaders(tile, frame, from, count, lights);
     frame->stages->shade(&args);
-    glint_groups_shade(tile, frame, &args, from, count);
-    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
-        glint_tile_add_visible_light(tile, frame);
-    if (plan->environment && args.first)
-        glint_tile_add_environment(tile, frame);
+    for (uint32_t bits = plan->after_shade; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctz(bits)]->after_shade(tile, frame, &args, from, count);
     glint_tile_count_powers(tile, frame, from, count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
 }
@@ -171,7 +146,6 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
             args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->resolve(&args);
-    glint_groups_resolve(tile, frame);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }
 

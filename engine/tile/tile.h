@@ -186,8 +186,6 @@ typedef struct glint_tile {
     glint_tile_counts counts;
     void *shadow_scratch; ///< scratch memory of occlude; owned; NULL until a frame has shadows of area lights
     struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
-    struct glint_group_sums *group_sums; ///< sums of light groups; NULL in frames without light passes; for a batch
-        ///< those of its tile
     double *unbumped[3]; ///< real: normals before bumps; NULL: no bumps
     uint32_t own_planes; ///< index of the current sample's planes among those of samples shaded together
 } glint_tile;
@@ -227,6 +225,7 @@ typedef struct glint_sample_walk {
     bool shows; ///< this walk's geometry is stored in the picture when normals are known
     bool any; ///< something is hit
     bool shines; ///< some hit is shaded per sample
+    bool gathered; ///< the samples are those of gathered pixels
     uint32_t from, count; ///< the current chunk of the plan's light rows: its first row and its number of rows; at
         ///< GLINT_AT_LIGHT, `count` is the number of rows from `slot` on, in that chunk
     uint32_t slot;
@@ -324,7 +323,7 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
                                        const uint32_t *slot, uint32_t count);
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count);
-/// effects/area_light/soft_shadow.c: computes light and shadow of all samples of a light together, in slots from
+/// tile/soft_shadow.c: computes light and shadow of all samples of a light together, in slots from
 /// `slot` on, if only their sum is read. Returns whether that is so, and marks the slots. The points must be known.
 bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                           uint32_t count);
@@ -332,6 +331,9 @@ bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint3
 /// lights and the planes, if there are any.
 glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
                                        uint32_t count, glint_shade_light *lights, glint_shade_planes *planes);
+/// For glint_stage.adds: true; `any`.
+bool glint_tile_adds_anywhere(const glint_tile *tile, const glint_tile_frame *frame, bool any);
+bool glint_tile_adds_to_hits(const glint_tile *tile, const glint_tile_frame *frame, bool any);
 /// Sets pointers to the requested planes of the picture.
 void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3],
                            float *beauty[3]);
@@ -366,9 +368,6 @@ static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_f
 }
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
-/// effects/bounce/bounce.c: returns whether any visible material needs secondary rays. The materials must be known.
-bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
-
 /// effects/visible_light/visible_light.c: visible lights.
 /// Clears the lights seen. Returns false if no ray of the tile can see a light.
 bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame);
@@ -380,16 +379,10 @@ static inline bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
     const uint16_t *seen = tile->own[GLINT_STAGE_VISIBLE_LIGHT]; // starts with lanes that see a light
     return seen && seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
 }
-/// Fills in the active lanes that see no light.
-const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
-/// Adds the brightness of visible lights to the sums, as background.
-void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/environment/environment.c: a background computed by a program.
 /// Returns whether some ray may leave the scene: then the tile's rays are needed.
 bool glint_tile_sees_environment(const glint_tile *tile);
-/// Adds the background of the rays that leave the scene to the sums.
-void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/adaptive/differ.c: compares the stored pixels of a base, and keeps the pixels that neighbouring tiles
 /// compare.
@@ -426,8 +419,8 @@ static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
 /// sample, and computes their rays.
 void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
                        uint32_t first, uint32_t samples);
-/// Adds the light of faces and vertices, if any are visible. The points must be known.
-void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame);
+/// Returns the sums of the light of faces and vertices, diffuse and specular, for the samples gathered, and clears them.
+double (*glint_tile_gathered_points(glint_tile *tile))[3][GLINT_TILE_SAMPLES];
 /// After the other stages: shades the samples, and after the last one resolves them into their pixels. The tile is
 /// then restored.
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count,
@@ -453,10 +446,8 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
                          const struct glint_batch *from);
 
 /// effects/transparent_shadow/transparent_shadow.c: light through transparent objects.
-/// Finds the points inside an absorbing medium, and returns whether there are any. The points
-/// must be known.
-bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
-/// After glint_tile_find_dim: returns the lanes of group `g` whose light must be tinted even without an occluder.
+/// Returns the lanes of group `g` inside an absorbing medium, whose light is tinted even without an occluder. The sample
+/// is shaded.
 static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
 {
     return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // the stage's memory begins with these lanes
@@ -470,8 +461,6 @@ void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *fra
                              uint32_t i, double out[3]);
 /// Returns whether one of `count` lights of the plan, from number `first` on, is hidden or dimmed at any point.
 bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count);
-/// Returns whether the light may cross a transparent surface before one of the tile's points. The points must be known.
-bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light);
 /// Adds the light of `count` lights of the plan, from number `first` on, at points that they reach through
 /// transparent surfaces, or partly. The points must be known.
 void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count);
@@ -554,8 +543,6 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_has_shading_points(const glint_tile *tile);
 /// Adds the light of faces and vertices to the sums of these other hits; after `shade`. The points must be known.
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
-/// Adds the light of faces and vertices to the given sums: diffuse and specular.
-void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES]);
 
 /// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters. At the first
 /// call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose

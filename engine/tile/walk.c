@@ -233,19 +233,15 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
     const uint32_t remaining = (uint32_t)frame->plan->desc.samples - first,
                    most = glint_tile_gathered_samples(frame->plan);
     const uint32_t samples = remaining < most ? remaining : most;
-    glint_sample_walk w = { .rays = true };
+    glint_sample_walk w = { .rays = true, .gathered = true };
     tile->own_lights = 0;
     glint_tile_gather(tile, frame, slots, count, first, samples);
-    const bool any = find_hits(tile, frame, &w);
-    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    const bool lit = shading_points ? glint_tile_choose_sampled(tile, frame) : any;
-    const uint32_t lights = lit ? frame->plan->light_count : 0;
+    w.shines = find_hits(tile, frame, &w);
+    glint_tile_step(tile, frame, GLINT_AT_SIGHT, &w);
+    const uint32_t lights = w.shines ? frame->plan->light_count : 0;
     find_lights(tile, frame, &w, 0, lights);
-    need_shading(tile, frame, &w, any, lit, 0);
-    if (shading_points && glint_tile_has_shading_points(tile)) {
-        glint_tile_need_points(tile, frame, &w);
-        glint_tile_vertex_gathered(tile, frame);
-    }
+    need_shading(tile, frame, &w, w.any, w.shines, 0);
+    glint_tile_step(tile, frame, GLINT_AT_REST, &w);
     glint_tile_shade_gathered(tile, frame, lights, slots, count, first, samples);
 }
 

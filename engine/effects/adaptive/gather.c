@@ -239,13 +239,12 @@ static void stack_samples(glint_tile *tile, const glint_tile_frame *frame, uint3
     activate_lanes(tile, tile->group_count / samples, count);
 }
 
-void glint_tile_vertex_gathered(glint_tile *tile, const glint_tile_frame *frame)
+double (*glint_tile_gathered_points(glint_tile *tile))[3][GLINT_TILE_SAMPLES]
 {
     struct glint_gathered *gathered = tile->gathered;
-    double(*const sum[2])[GLINT_TILE_SAMPLES] = { gathered->point_light[0], gathered->point_light[1] };
     gathered->has_point_light = true;
     memset(gathered->point_light, 0, sizeof gathered->point_light);
-    glint_tile_vertex_to(tile, frame, sum);
+    return gathered->point_light;
 }
 
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count,

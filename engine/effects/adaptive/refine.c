@@ -1,5 +1,5 @@
 /// The pixels of a tile that get all samples, and the other pixels, which come from the base.
-#include "engine/effects/light_groups/light_groups.h"
+#include "engine/tile/tile.h"
 
 #include <string.h>
 
@@ -119,7 +119,6 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
             if (frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
                 glint_tile_take_plane(tile, frame, base->plane[GLINT_PASS_BACKGROUND + k][c], tile->film.terms[k][c]);
     }
-    glint_groups_take_base(tile, frame);
     if (glint_tile_wants_coverage(frame->plan))
         take_coverage(tile, frame);
     copy_whole(tile, frame);

@@ -387,10 +387,31 @@ static bool called(const glint_plan *plan)
            (plan->clears || ((plan->mirrors || plan->transmits) && plan->desc.max_depth > 0));
 }
 
+/// Returns whether any visible material needs secondary rays. The materials must be known.
+static bool sends_on(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_bounce_material *materials = frame->plan->bouncing;
+    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the previous lane
+    if (tile->at.only) {
+        const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
+        return glint_sends_on(only);
+    }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
+            if (material != last && glint_sends_on(&materials[material]))
+                return true;
+            last = material;
+        }
+    return false;
+}
+
+static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any) { return any && sends_on(tile, frame); }
+
 /// Adds the light along the rays that surfaces send on.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    if (!walk->any || tile->direct || !glint_tile_sends_on(tile, frame))
+    if (!walk->any || tile->direct || !sends_on(tile, frame))
         return;
     glint_tile_need_points(tile, frame, walk);
     follow(tile, frame);
@@ -409,6 +430,7 @@ const glint_stage glint_stage_bounce = {
     .normals = true,
     .remote = true,
     .step[GLINT_AT_REST] = add,
+    .adds = adds,
     .create = create,
     .destroy = destroy,
     .fit = fit,

@@ -56,6 +56,12 @@ static void store(glint_tile *tile, const glint_tile_frame *frame, glint_sample_
 
 static bool fit(void *memory, const glint_plan *plan) { return glint_derivative_fits(memory, plan); }
 
+static bool always(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light)
+{
+    (void)tile, (void)frame, (void)light;
+    return true;
+}
+
 /// Next to `shade`; no stage reads its result.
 const glint_stage glint_stage_derivative = {
     .name = "derivative",
@@ -70,6 +76,8 @@ const glint_stage glint_stage_derivative = {
     .normals = true,
     .remote = true,
     .step = { [GLINT_AT_SHADED] = derive, [GLINT_AT_REST] = fade, [GLINT_AT_STORE] = store },
+    .adds = glint_tile_adds_anywhere,
+    .singles = always,
     .create = create,
     .destroy = destroy,
     .fit = fit,

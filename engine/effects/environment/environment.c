@@ -212,11 +212,14 @@ static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const ui
         add_group(tile, environment, channels, groups[k], k, lanes[k]);
 }
 
-void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
+/// Adds the background of the rays that leave the scene to the sums.
+static void add_background(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
+                           uint32_t count_of_lights)
 {
     uint32_t groups[GLINT_PROGRAM_GROUPS], count = 0;
     uint16_t lanes[GLINT_PROGRAM_GROUPS];
-    if (tile->transparent)
+    (void)from, (void)count_of_lights;
+    if (tile->transparent || !args->first)
         return;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         lanes[count] = leaving(tile, frame->plan, g);
@@ -305,6 +308,8 @@ const glint_stage glint_stage_environment = {
     .sums = true,
     .remote = true,
     .step[GLINT_AT_SIGHT] = need_directions,
+    .after_shade = add_background,
+    .adds = glint_tile_adds_anywhere,
     .create = create,
     .destroy = destroy,
     .sized = true,

@@ -417,6 +417,7 @@ const glint_stage glint_stage_indirect = {
     .normals = true,
     .remote = true,
     .step[GLINT_AT_REST] = add,
+    .adds = glint_tile_adds_to_hits,
     .create = create,
     .destroy = destroy,
     .sized = true,

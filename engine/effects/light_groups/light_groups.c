@@ -41,21 +41,22 @@ static struct glint_group_sums *create(uint32_t count)
     return sums;
 }
 
-void glint_group_sums_destroy(struct glint_group_sums *sums)
+static void destroy(void *memory)
 {
+    struct glint_group_sums *sums = memory;
     if (!sums)
         return;
     if (sums->batch)
         sums->batch->points = NULL; // the tile's sums own them
-    glint_group_sums_destroy(sums->batch);
-    glint_group_sums_destroy(sums->points);
+    destroy(sums->batch);
+    destroy(sums->points);
     free(sums->sum);
     free(sums->faded);
     free(sums->mean);
     free(sums);
 }
 
-struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
+static void *create_for(const glint_plan *plan)
 {
     const struct glint_light_groups *groups = plan->light_groups;
     struct glint_group_sums *sums = create(groups->count);
@@ -73,23 +74,15 @@ struct glint_group_sums *glint_group_sums_create(const glint_plan *plan)
         sums->batch->points = sums->points; // batches use `points`, too
     if (good)
         return sums;
-    glint_group_sums_destroy(sums);
+    destroy(sums);
     return NULL;
 }
 
-bool glint_group_sums_fit(const struct glint_group_sums *sums, const glint_plan *plan)
-{
-    const struct glint_light_groups *groups = plan->light_groups;
-    const bool rays = plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT];
-    if (!sums || !groups)
-        return !sums && !groups;
-    return sums->count == groups->count && sums->pass_count == groups->pass_count && !sums->batch == !rays &&
-           !sums->points == !plan->runs[GLINT_STAGE_VERTEX] && !sums->faded == !plan->runs[GLINT_STAGE_DEPTH_CUE];
-}
+static struct glint_group_sums *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_LIGHT_GROUPS]; }
 
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points)
 {
-    const struct glint_group_sums *own = to->group_sums;
+    const struct glint_group_sums *own = own_of(to);
     return !own ? NULL : points ? own->points : own->batch;
 }
 
@@ -102,33 +95,38 @@ static double sum_of(const struct glint_group_sums *sums, uint32_t group, int c,
     return (sum[DIFFUSE][c][i] + sum[SPECULAR][c][i]) + sum[OTHER][c][i];
 }
 
-void glint_groups_begin(glint_tile *tile, const glint_plan *plan)
+/// Clears the sums before the first call of shade for the eye's hits, or for a batch.
+static void begin(glint_tile *tile, const glint_tile_frame *frame, glint_shade_args *args, glint_shade_light *lights,
+                  uint32_t from, uint32_t count)
 {
     const size_t size = tile->group_count * GLINT_GROUP * sizeof(double);
-    for (uint32_t g = 0; plan->light_groups && g < tile->group_sums->count; g++)
+    (void)frame, (void)args, (void)lights, (void)count;
+    if (from > 0 || (!tile->batch && tile->sample > 0))
+        return;
+    for (uint32_t g = 0; g < own_of(tile)->count; g++)
         for (int k = 0; k < SUMS; k++)
             for (int c = 0; c < 3; c++)
-                memset(tile->group_sums->sum[g][k][c], 0, size);
+                memset(own_of(tile)->sum[g][k][c], 0, size);
 }
 
 double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES]
 {
-    return tile->group_sums->sum[group];
+    return own_of(tile)->sum[group];
 }
 
 void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3])
 {
-    for (int c = 0; tile->group_sums && group != GLINT_NO_GROUP && c < 3; c++)
-        tile->group_sums->sum[group][OTHER][c][i] += light[c];
+    for (int c = 0; own_of(tile) && group != GLINT_NO_GROUP && c < 3; c++)
+        own_of(tile)->sum[group][OTHER][c][i] += light[c];
 }
 
 /// Computes the ambient term of all hits, of which each light has a share.
 static void shade_ambient(const glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args)
 {
     const struct glint_light_groups *groups = frame->plan->light_groups;
-    double(*local)[3][GLINT_TILE_SAMPLES] = tile->group_sums->local;
+    double(*local)[3][GLINT_TILE_SAMPLES] = own_of(tile)->local;
     glint_shade_args ambient = *args;
-    memset(local, 0, sizeof tile->group_sums->local);
+    memset(local, 0, sizeof own_of(tile)->local);
     ambient.light_count = 0;
     for (int k = 0; k < GLINT_TERM_LOCAL; k++)
         for (int c = 0; c < 3; c++)
@@ -137,7 +135,7 @@ static void shade_ambient(const glint_tile *tile, const glint_tile_frame *frame,
     for (uint32_t g = 0; g < groups->count; g++)
         for (int c = 0; c < 3; c++)
             for (uint32_t i = 0; groups->ambient[g][c] > 0 && i < tile->group_count * GLINT_GROUP; i++)
-                tile->group_sums->sum[g][OTHER][c][i] += groups->ambient[g][c] * local[GLINT_TERM_AMBIENT][c][i];
+                own_of(tile)->sum[g][OTHER][c][i] += groups->ambient[g][c] * local[GLINT_TERM_AMBIENT][c][i];
 }
 
 void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
@@ -150,7 +148,7 @@ void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, con
     for (int term = 0; term < 2; term++)
         for (int c = 0; c < 3; c++)
             own.sum[GLINT_TERM_DIFFUSE + term][c] =
-                args->sum[GLINT_TERM_DIFFUSE + term][c] ? tile->group_sums->sum[group][DIFFUSE + term][c] : NULL;
+                args->sum[GLINT_TERM_DIFFUSE + term][c] ? own_of(tile)->sum[group][DIFFUSE + term][c] : NULL;
     frame->stages->shade(&own);
 }
 
@@ -174,13 +172,11 @@ static uint32_t choose_lights(const glint_tile *tile, const glint_plan_light *ro
     return chosen_count;
 }
 
-void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
-                        uint32_t count)
+/// Adds the light of a call of shade, and the lights' share of ambient light if it has `first`.
+static void shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from, uint32_t count)
 {
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     glint_shade_args own = *args;
-    if (!frame->plan->light_groups)
-        return;
     own.lights = lights;
     for (uint32_t group = 0, next; group < frame->plan->light_groups->count; group = next) {
         own.light_count = choose_lights(tile, &frame->plan->lights[from], count, args->lights, group, lights, &next);
@@ -195,7 +191,7 @@ void glint_groups_collect(const glint_batch *batch, const glint_plan *plan, glin
 {
     for (uint32_t g = 0; g < plan->light_groups->count; g++) {
         for (int c = 0; c < 3; c++)
-            to->group_sums->sum[g][OTHER][c][pixel] += weight[c] * sum_of(batch->tile.group_sums, g, c, at);
+            own_of(to)->sum[g][OTHER][c][pixel] += weight[c] * sum_of(own_of(&batch->tile), g, c, at);
     }
 }
 
@@ -203,13 +199,13 @@ void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint
 {
     const struct glint_light_groups *groups = plan->light_groups;
     for (uint32_t g = 0; groups->has_ambient && g < groups->count; g++)
-        to->group_sums->sum[g][OTHER][c][pixel] += groups->ambient[g][c] * light;
+        own_of(to)->sum[g][OTHER][c][pixel] += groups->ambient[g][c] * light;
 }
 
 void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
                        const double (*transmittance)[GLINT_TILE_SAMPLES])
 {
-    struct glint_group_sums *sums = tile->group_sums;
+    struct glint_group_sums *sums = own_of(tile);
     for (uint32_t g = 0; plan->light_groups && g < sums->count; g++)
         for (int c = 0; c < 3; c++)
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
@@ -237,7 +233,7 @@ void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *fr
         for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++)
             for (int term = 0; term < 2; term++)
                 for (int c = 0; c < 3; c++)
-                    light[i].term[term][c] = (float)fmin(tile->group_sums->sum[g][term][c][i], FLT_MAX);
+                    light[i].term[term][c] = (float)fmin(own_of(tile)->sum[g][term][c][i], FLT_MAX);
     }
 }
 
@@ -248,7 +244,7 @@ void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, 
         args->light[1] = args->light[0] + (size_t)glint_shading_points_of(frame)->blocks * GLINT_SHADING_POINT_BLOCK;
         for (int term = 0; term < 2; term++)
             for (int c = 0; c < 3; c++)
-                args->sum[term][c] = args->sum[term][c] ? tile->group_sums->sum[g][term][c] : NULL;
+                args->sum[term][c] = args->sum[term][c] ? own_of(tile)->sum[g][term][c] : NULL;
         frame->stages->geometry[frame->plan->desc.precision].vertex(args);
     }
 }
@@ -293,30 +289,34 @@ static void find_rest(const glint_tile *tile, const glint_plan *plan, int c, con
     }
 }
 
-void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame)
+/// Averages all samples.
+static void resolve(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
     const struct glint_light_groups *groups = frame->plan->light_groups;
     const double samples = frame->plan->desc.samples;
     const uint32_t count = tile->group_count * GLINT_GROUP;
-    for (int c = 0; groups && c < 3; c++) {
+    for (int c = 0; c < 3; c++) {
         double lamps[GLINT_TILE_SAMPLES] = { 0 };
         for (uint32_t g = 0; g < groups->count; g++) {
             double light[GLINT_TILE_SAMPLES];
             if (g == groups->rest)
                 continue;
-            take_light(tile->group_sums, g, c, count, light);
-            add_light(light, count, samples, lamps, g < groups->pass_count ? tile->group_sums->mean[g][c] : NULL);
+            take_light(own_of(tile), g, c, count, light);
+            add_light(light, count, samples, lamps, g < groups->pass_count ? own_of(tile)->mean[g][c] : NULL);
         }
         if (groups->rest != GLINT_NO_GROUP)
-            find_rest(tile, frame->plan, c, lamps, tile->group_sums->mean[groups->rest][c]);
+            find_rest(tile, frame->plan, c, lamps, own_of(tile)->mean[groups->rest][c]);
     }
 }
 
-void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame)
+/// Copies the means of the base for the pixels that are not refined.
+static void take_base(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    for (size_t g = 0; g < frame->image->light_count; g++)
+    (void)walk;
+    for (size_t g = 0; frame->base && g < frame->image->light_count; g++)
         for (int c = 0; c < 3; c++)
-            glint_tile_take_plane(tile, frame, frame->base->light[g][c], tile->group_sums->mean[g][c]);
+            glint_tile_take_plane(tile, frame, frame->base->light[g][c], own_of(tile)->mean[g][c]);
 }
 
 static void store(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
@@ -324,7 +324,7 @@ static void store(glint_tile *tile, const glint_tile_frame *frame, glint_sample_
     (void)walk;
     for (size_t g = 0; g < frame->image->light_count; g++)
         for (int c = 0; c < 3; c++)
-            glint_tile_store_plane(tile, tile->group_sums->mean[g][c], frame->image->light[g][c], frame->image->width);
+            glint_tile_store_plane(tile, own_of(tile)->mean[g][c], frame->image->light[g][c], frame->image->width);
 }
 
 static bool called(const glint_plan *plan) { return plan->light_groups; }
@@ -332,5 +332,11 @@ static bool called(const glint_plan *plan) { return plan->light_groups; }
 /// Runs as a part of all stages that add light.
 const glint_stage glint_stage_light_groups = {
     .called = called,
-    .step[GLINT_AT_STORE_LIGHT] = store,
+    .step = { [GLINT_AT_DONE] = resolve, [GLINT_AT_STORE] = take_base, [GLINT_AT_STORE_LIGHT] = store },
+    .before_shade = begin,
+    .after_shade = shade,
+    .adds = glint_tile_adds_anywhere,
+    .create = create_for,
+    .destroy = destroy,
+    .sized = true,
 };

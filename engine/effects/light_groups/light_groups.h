@@ -10,20 +10,10 @@
 #include "engine/plan/light_groups.h"
 #include "engine/tile/batch.h"
 
-struct glint_group_sums *glint_group_sums_create(const glint_plan *plan);
-void glint_group_sums_destroy(struct glint_group_sums *sums); ///< NULL: nothing
-bool glint_group_sums_fit(const struct glint_group_sums *sums,
-                          const glint_plan *plan); ///< returns whether they fit; NULL fits frames without light passes
 /// Returns the sums for a batch of a tile; points: those for faces and vertices. NULL in frames without light passes.
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points);
 
-/// Clears a tile's sums. Then, for each call of shade, adds the light of its lights, and the lights' share of ambient
-/// light if it has `first`.
-void glint_groups_begin(glint_tile *tile, const glint_plan *plan);
-/// The call's lights are `count` rows of the plan from row `from` on, as in glint_tile_shade_args, or all of one
-/// group.
-void glint_groups_shade(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
-                        uint32_t count);
+/// Adds the light of a call of shade whose lights are all of one group.
 void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
                             uint32_t group);
 /// Returns the sums of a group's diffuse and specular light.
@@ -43,9 +33,5 @@ void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
 /// effects/vertex_shading/.
 void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
 void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
-
-/// Averages all samples, copies the base's means for the pixels that are not refined, and stores them.
-void glint_groups_resolve(const glint_tile *tile, const glint_tile_frame *frame);
-void glint_groups_take_base(const glint_tile *tile, const glint_tile_frame *frame);
 
 #endif

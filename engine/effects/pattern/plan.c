@@ -411,12 +411,3 @@ bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use 
     *out = (glint_program_use) { NULL, glint_field_name(GLINT_FIELD_BACKGROUND), plan->environment->program };
     return true;
 }
-
-static bool shades(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->patterns && plan->patterns->shaders; }
-
-const glint_stage glint_stage_shader = {
-    .name = "shader",
-    .doc = "shaders of materials, once for each light",
-    .called = shades,
-    .remote = true,
-};

@@ -289,3 +289,13 @@ void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const gl
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADER, false);
 }
+
+static bool shades(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->patterns && plan->patterns->shaders; }
+
+const glint_stage glint_stage_shader = {
+    .name = "shader",
+    .doc = "shaders of materials, once for each light",
+    .called = shades,
+    .remote = true,
+    .adds = glint_tile_adds_anywhere,
+};

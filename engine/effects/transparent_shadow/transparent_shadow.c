@@ -21,6 +21,7 @@
 
 struct glint_transparent_shadow {
     uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside an absorbing medium; first: see glint_tile_dim_lanes
+    uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS]; ///< the other points that each light reaches, for shade
     // unfinished rays, packed from the start
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
@@ -86,7 +87,8 @@ static unsigned lanes_within(const glint_tile *tile, const glint_plan *plan, uin
     return tile->batch || absorbs(plan, &plan->eye_media) ? tile->at.hits[g] : tile->at.hits[g] & tile->hit.back[g];
 }
 
-bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
+/// Finds the points inside an absorbing medium, and returns whether there are any. The points must be known.
+static bool find_dim(const glint_tile *tile, const glint_tile_frame *frame)
 {
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
@@ -171,9 +173,12 @@ static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, c
     return any;
 }
 
-bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light)
+/// Returns whether the light may cross a transparent surface before one of the tile's points, or is dimmed there. The
+/// points must be known.
+static bool may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light)
 {
-    return find_tinted(tile, frame, light, tile->at.hits, own_of(tile)->tinted);
+    return (frame->plan->dims && find_dim(tile, frame)) ||
+           (light->shadows && find_tinted(tile, frame, light, tile->at.hits, own_of(tile)->tinted));
 }
 
 /// Returns whether a material does not reflect any light from lamps.
@@ -621,6 +626,28 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     glint_tile_transparent_shadows(tile, frame, walk->from, walk->count);
 }
 
+/// Leaves the points inside an absorbing medium out of the lanes of lights. No light is summed then.
+static void mask_dim(glint_tile *tile, const glint_tile_frame *frame, glint_shade_args *args, glint_shade_light *lights,
+                     uint32_t from, uint32_t count)
+{
+    struct glint_transparent_shadow *own = own_of(tile);
+    (void)args;
+    if (!frame->plan->dims || count == 0 || !find_dim(tile, frame))
+        return;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!frame->plan->lights[from + i].shadows)
+            continue;
+        for (uint32_t g = 0; g < tile->group_count; g++)
+            own->whole[i][g] = lights[i].lit[g] & (uint16_t)~own->dim[g];
+        lights[i].lit = own->whole[i];
+    }
+}
+
+static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any)
+{
+    return any && (frame->plan->dims || glint_tile_is_shadowed(tile, frame->plan, 0, frame->plan->light_count));
+}
+
 /// Runs as a part of the stages occlude and shade.
 const glint_stage glint_stage_tint = {
     .called = called,
@@ -628,6 +655,9 @@ const glint_stage glint_stage_tint = {
     .end = end,
     .normals = true,
     .step[GLINT_AT_SHADED] = add,
+    .before_shade = mask_dim,
+    .adds = adds,
+    .singles = may_be_tinted,
     .create = create,
     .destroy = free,
     .shared = true,

@@ -367,7 +367,7 @@ bool glint_tile_has_shading_points(const glint_tile *tile)
 }
 
 /// Adds the interpolated light of the points of each sample's triangle to `sum`: diffuse and specular.
-static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
+static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*sum)[3][GLINT_TILE_SAMPLES])
 {
     const glint_plan *plan = frame->plan;
     const glint_shading_points_cached *shading_points = glint_shading_points_of(frame);
@@ -392,13 +392,14 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame, double (*con
     glint_groups_spread(tile, frame, &args);
 }
 
-void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, double (*const sum[2])[GLINT_TILE_SAMPLES])
+/// Adds the light of faces and vertices to the given sums: diffuse and specular.
+static void add_to(glint_tile *tile, const glint_tile_frame *frame, double (*to)[3][GLINT_TILE_SAMPLES])
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
         own_of(tile)->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
     if (!each_block(tile, frame, request_block))
         each_block(tile, frame, wait_for);
-    spread(tile, frame, sum);
+    spread(tile, frame, to);
     if (frame->plan->derivatives)
         glint_derive_vertex(tile, frame, own_of(tile)->wanted);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX, false);
@@ -407,8 +408,7 @@ void glint_tile_vertex_to(glint_tile *tile, const glint_tile_frame *frame, doubl
 
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
 {
-    double(*const sum[2])[GLINT_TILE_SAMPLES] = { tile->film.sum[GLINT_TERM_DIFFUSE], tile->film.sum[GLINT_TERM_SPECULAR] };
-    glint_tile_vertex_to(tile, frame, sum);
+    add_to(tile, frame, tile->film.sum + GLINT_TERM_DIFFUSE);
 }
 
 static bool called(const glint_plan *plan)
@@ -427,7 +427,10 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     if (!walk->any || !glint_tile_has_shading_points(tile))
         return;
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_vertex(tile, frame);
+    if (walk->gathered)
+        add_to(tile, frame, glint_tile_gathered_points(tile));
+    else
+        glint_tile_vertex(tile, frame);
 }
 
 const glint_stage glint_stage_vertex = {
@@ -439,6 +442,7 @@ const glint_stage glint_stage_vertex = {
     .reads = GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS),
     .sums = true,
     .step = { [GLINT_AT_SIGHT] = choose, [GLINT_AT_REST] = add },
+    .adds = glint_tile_adds_to_hits,
     .create = create,
     .destroy = destroy,
     .fit = fit,

@@ -16,6 +16,7 @@ static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 
 
 struct glint_visible_light {
     uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light; first: see glint_tile_sees_light
+    uint16_t unlit[GLINT_TILE_GROUPS]; ///< the other active lanes, for shade
     uint32_t *near; ///< the lights that the current rays may see
     uint32_t near_count;
     uint32_t which[GLINT_TILE_SAMPLES]; ///< the light that each ray sees
@@ -257,16 +258,23 @@ static void normal_of(const glint_tile *tile, const glint_tile_frame *frame, uin
         vec_scale(normal, normal, -1);
 }
 
-const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS])
+/// Leaves the background to the rays that see no light.
+static void mask_background(glint_tile *tile, const glint_tile_frame *frame, glint_shade_args *args, glint_shade_light *lights,
+                            uint32_t from, uint32_t count)
 {
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        lanes[g] = (uint16_t)(tile->active[g] & ~own_of(tile)->seen[g]);
-    return lanes;
+    struct glint_visible_light *own = own_of(tile);
+    (void)frame, (void)lights, (void)from, (void)count;
+    for (uint32_t g = 0; g < tile->group_count && args->first; g++)
+        own->unlit[g] = (uint16_t)(tile->active[g] & ~own->seen[g]);
+    args->active = args->first ? own->unlit : args->active;
 }
 
-void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame)
+/// Adds the brightness of visible lights to the sums, as background.
+static void add_brightness(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args, uint32_t from,
+                           uint32_t count)
 {
-    for (uint32_t g = 0; g < tile->group_count; g++)
+    (void)from, (void)count;
+    for (uint32_t g = 0; g < tile->group_count && args->first; g++)
         for (unsigned bits = own_of(tile)->seen[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
@@ -316,6 +324,9 @@ const glint_stage glint_stage_visible_light = {
     .sums = true,
     .remote = true,
     .step[GLINT_AT_HITS] = look,
+    .before_shade = mask_background,
+    .after_shade = add_brightness,
+    .adds = glint_tile_adds_anywhere,
     .normal = normal_of,
     .create = create,
     .destroy = destroy,

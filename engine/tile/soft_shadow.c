@@ -11,15 +11,16 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot];
     const uint32_t each_sample = 1u << GLINT_FIELD_SHININESS | 1u << GLINT_FIELD_BUMP | 1u << GLINT_FIELD_SHADER;
-    if (!light->light_samples || light->hard || plan->facets || plan->derivatives || glint_plan_cuts(plan) ||
-        frame->count_work || frame->time_stages || glint_tile_fields_shown(tile, plan) & each_sample)
+    if (!light->light_samples || light->hard || plan->facets || glint_plan_cuts(plan) || frame->count_work || frame->time_stages || glint_tile_fields_shown(tile, plan) & each_sample)
         return false;
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->at.light[i].cosine != glint_tile_own_light(tile, i)->cosine ||
             (light->shadows && tile->at.light[i].unoccluded != glint_tile_own_light(tile, i)->unoccluded))
             return false;
-    return !(plan->dims && glint_tile_find_dim(tile, frame)) &&
-           !(plan->tints && light->shadows && glint_tile_may_be_tinted(tile, frame, light));
+    for (uint32_t bits = plan->singles; bits; bits &= bits - 1)
+        if (glint_stage_table[__builtin_ctz(bits)]->singles(tile, frame, light))
+            return false;
+    return true;
 }
 
 static bool sum(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot, uint32_t count)
