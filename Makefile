@@ -322,7 +322,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects exposure faults films gallery golden inputs install kills memory mistakes parts povray publish python readme relight sweeps untrusted vectors warnings watch)) tests/machines/systems.sh)
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects exposure faults films gallery golden inputs install kills memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

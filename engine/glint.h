@@ -1778,6 +1778,20 @@ glint_status glint_reference_measure(const glint_reference *reference, const gli
 glint_status glint_reference_difference(const glint_reference *reference, const glint_image *image, double scale,
                                         glint_image **out, glint_error *error);
 
+// ---- The error of a picture from its own samples -------------------------------------------------------------------
+
+/// Returns the seed of the frame's partner: a picture with the same number of samples, independent light, and sample
+/// positions chosen so that the difference of the two pictures tells the error of one. The partner itself has a
+/// larger error.
+double glint_partner_seed(const glint_render_desc *desc);
+/// Estimates the error of a picture of at least 2 samples a pixel: the root of the mean squared difference to the
+/// picture of infinitely many samples, in linear light, over pixels and channels. Channels that are not finite do not
+/// count. `partner` is rendered from the same scene with the frame's partner seed. Both images have the beauty pass.
+///
+/// With one sample the estimate sees no edges, because the only sample is in the middle of the pixel. It never sees
+/// details that both pictures miss.
+glint_status glint_estimate_error(const glint_image *image, const glint_image *partner, double *rmse, glint_error *error);
+
 // ---- Other strengths and colours of lights ---------------------------------------------------------------------------
 
 /// name of the light pass for the light in a file that none of its light passes contains

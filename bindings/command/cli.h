@@ -119,7 +119,7 @@ struct cli_option {
     bool repeats; ///< the option may be given several times
     const char *group; ///< heading in --help for this option and those after it
 };
-#define CLI_OPTION_COUNT 71
+#define CLI_OPTION_COUNT 73
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// Returns the placeholder of the option's value in --help, or its choices; "" when it takes no value.
@@ -210,6 +210,8 @@ void cli_end_line(cli_output *output);
 cli_progress *cli_progress_create(bool color);
 void cli_progress_destroy(cli_progress *progress);
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
+/// Shows that the current frame has been rendered with so many samples, and its error.
+void cli_progress_samples(cli_progress *progress, double samples, double error);
 /// Shows the current step of a study, the time spent so far, and the expected time of this step and of the rest.
 void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double remaining_ms);
 /// Shows that a film is being made and has `done` of `count` frames. NULL: the film is finished, and the bar counts

@@ -269,6 +269,27 @@ static bool check_auto(const cli_options *options, char *message)
     return false;
 }
 
+// Checks the options that go with --until and --seconds, which choose the samples of each picture.
+static bool check_samples(const cli_options *options, char *message)
+{
+    const char *name = options->request.until > 0 ? "until" : "seconds";
+    const char *samples = options->request.render_text[glintL_render_find("samples")];
+    if (options->request.until == 0 && options->request.seconds == 0)
+        return true;
+    if (options->request.repeat > 1)
+        snprintf(message, MESSAGE, "--%s: not with --repeat, which renders the same samples each time", name);
+    else if (options->finds_exposure || options->finds_range)
+        snprintf(message, MESSAGE, "--%s: not with --%s auto, which measures pictures with other samples; expected %s",
+                 name, options->finds_exposure ? "exposure" : "colormap",
+                 options->finds_exposure ? "a number of stops" : "NAME:LOW:HIGH");
+    else if (samples && atoi(samples) < 2)
+        snprintf(message, MESSAGE, "--samples: expected at least 2 with --%s, got '%.20s'; it is the most that a pixel gets",
+                 name, samples);
+    else
+        return true;
+    return false;
+}
+
 static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
@@ -305,7 +326,7 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
         snprintf(message, MESSAGE, "--sweep: expected at most %d points in total", GLINTL_FRAMES_MAX);
         return false;
     }
-    return check_auto(options, message) && cli_check_dialect(options, message);
+    return check_auto(options, message) && check_samples(options, message) && cli_check_dialect(options, message);
 }
 
 // Adds the swept parameters to the set ones, and turns -s -e -j into a range. --help shows the defaults of the swept

@@ -94,6 +94,10 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
     fprintf(out, ",\"status\":\"%s\"", record->kept ? "kept" : "rendered");
     if (record->repeat)
         fprintf(out, ",\"repeat\":%d", record->repeat);
+    if (record->samples > 0) {
+        fprintf(out, ",\"samples\":%.0f,\"error\":", record->samples);
+        glintL_json_number(out, record->error);
+    }
     print_times(out, record);
     fputc(',', out);
     cli_print_rays(out, &record->stats.rays);
@@ -141,7 +145,10 @@ static void print_frame_line(cli_output *output, const glintL_record *record)
     fprintf(stderr, "frame %" PRId64, record->index);
     if (record->repeat)
         fprintf(stderr, ", repeat %d", record->repeat);
-    fprintf(stderr, ": %s%s%.1f ms\n", file ? file : "", file ? ", " : "", ms);
+    fprintf(stderr, ": %s%s%.1f ms", file ? file : "", file ? ", " : "", ms);
+    if (record->samples > 0)
+        fprintf(stderr, ", %.0f samples, error %.3g", record->samples, record->error);
+    fputc('\n', stderr);
 }
 
 static void warn_odd(const cli_output *output, int64_t index, const glint_odd *odd, glint_odd_kind kind)
@@ -165,7 +172,7 @@ static void report_frame(void *context, const glintL_run *run, const glintL_reco
         cli_progress_clear(output->progress);
     if (output->json)
         print_frame_json(output, record);
-    else if (!output->quiet && (!output->progress || record->repeat))
+    else if (!output->quiet && (!output->progress || record->repeat || record->samples > 0))
         print_frame_line(output, record);
     for (int kind = 0; kind < GLINT_ODD_COUNT; kind++)
         if (record->stats.odd[kind].count > 0 && !record->kept)
@@ -183,6 +190,13 @@ static void report_rendering(void *context, const glintL_run *run, bool begins)
     cli_output *output = context;
     if (output->progress)
         cli_progress_update(output->progress, run, begins);
+}
+
+static void report_step(void *context, double samples, double error)
+{
+    const cli_output *output = context;
+    if (output->progress)
+        cli_progress_samples(output->progress, samples, error);
 }
 
 static void report_warning(void *context, const char *message)
@@ -231,6 +245,7 @@ glintL_reporter cli_reporter(cli_output *output)
     return (glintL_reporter) { .context = output,
                                .rendering = report_rendering,
                                .frame = report_frame,
+                               .step = report_step,
                                .warn = report_warning,
                                .figure = report_figure,
                                .making = report_making };

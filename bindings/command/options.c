@@ -338,6 +338,10 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
                                         .help = "take all samples only where neighbouring pixels differ by more than X",
                                         .suggest = "0.3 0.1 0.03 0.01" },
+    { "until", 0, "ERROR", CLI_RENDER, read_real, .help = "take samples until the picture's error is estimated at ERROR",
+      AT(request.until), WITHIN(DBL_TRUE_MIN, DBL_MAX), .expected = "error of linear light > 0", .suggest = "0.01 0.003 0.001" },
+    { "seconds", 0, "N", CLI_RENDER, read_real, .help = "take samples for at most N seconds a frame", AT(request.seconds),
+      WITHIN(DBL_TRUE_MIN, 1e9), .expected = "seconds > 0", .suggest = "10 30 120" },
     { "colormap", 0, "MAP", SHOWN, read_colormap,
       .help = "colours of depth and d:NAME in a .png: viridis, magma, cividis, turbo, coolwarm, none; MAP:LOW:HIGH "
               "sets the range, MAP:auto finds one range for all frames",

@@ -24,6 +24,7 @@ struct cli_progress {
     double start_ms;
     int64_t done, kept, todo; // numbers of frames; todo 0: unknown
     char what[80]; // name of the step of a study, or of a film; "": the bar counts frames
+    double samples, error; // of the current frame so far; 0 samples: not known
     double done_ms, step_ms, remaining_ms;
     double film_ms; // start time of the film
     glint_renderer *renderer; // the renderer while it renders, otherwise NULL
@@ -74,7 +75,7 @@ static void draw_step(cli_progress *progress)
 // The caller holds the lock.
 static void draw(cli_progress *progress)
 {
-    char remaining[32] = "", total[32] = "", text[TEXT_SIZE];
+    char remaining[32] = "", total[32] = "", samples[64] = "", text[TEXT_SIZE];
     double elapsed = (glintL_now_ms() - progress->start_ms) * 1e-3;
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing about the speed
@@ -85,8 +86,10 @@ static void draw(cli_progress *progress)
     }
     if (rate > 0 && progress->todo > 0)
         format_time(remaining, ((double)progress->todo - (double)progress->done - now) / rate);
-    snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
-             *remaining ? ", " : "", remaining, *remaining ? " left" : "");
+    if (progress->samples > 0)
+        snprintf(samples, sizeof samples, ", %.0f samples: error %.2g", progress->samples, progress->error);
+    snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
+             *remaining ? ", " : "", remaining, *remaining ? " left" : "", samples);
     draw_line(progress, share, text);
 }
 
@@ -165,10 +168,20 @@ void cli_progress_destroy(cli_progress *progress)
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering)
 {
     pthread_mutex_lock(&progress->lock);
+    if (progress->done != run->done)
+        progress->samples = 0;
     progress->done = run->done;
     progress->kept = run->kept;
     progress->todo = run->todo;
     progress->renderer = rendering ? run->renderer : NULL;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_samples(cli_progress *progress, double samples, double error)
+{
+    pthread_mutex_lock(&progress->lock);
+    progress->samples = samples;
+    progress->error = error;
     pthread_mutex_unlock(&progress->lock);
 }
 

@@ -59,6 +59,9 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run)
     if (!output->quiet)
         output->progress = cli_progress_create(output->color);
     bool reported = false;
+    if (glintL_run_refines(run)) { // a finished file does not tell its error, and no two pictures share results
+        run->request.force = run->request.no_reuse = run->keeps_images = true;
+    }
     bool good = !(options->finds_exposure || options->finds_range) || measure(options, output, run, &reported);
     good = good && run_all(options, output, run, &reported);
     if (!cli_finish_frames(run, good))

@@ -118,7 +118,39 @@ static bool is_kept(glintL_run *run, glintL_work *work, bool open)
     return false;
 }
 
-// Renders and reports one call, or finds its files, in which case the work has no picture. A first call with an
+typedef struct called {
+    const glint_scene *scene;
+    int64_t number;
+    bool writes;
+    glintL_run *run;
+} called;
+
+static glintL_work *plan_again(void *context, const glintL_render *render)
+{
+    const called *call = context;
+    glint_error error;
+    glintL_work *work = NULL;
+    if (glintL_work_create(call->scene, render, call->number, call->writes, true, &work, &error))
+        glintL_run_fail(call->run, glintL_run_exit_code(error.status), call->number, "%s", error.message);
+    return work;
+}
+
+// Replaces a planned work by one that is rendered with the samples that it needs. False: the run has failed.
+static bool refine(glintL_run *run, const glint_scene *scene, glintL_work **work)
+{
+    called call = { scene, (*work)->index, *(*work)->render.output && strcmp((*work)->render.output, "none") != 0, run };
+    const glintL_render render = (*work)->render;
+    const glintL_frame_planner planner = { &render, plan_again, &call };
+    glintL_work *refined = glintL_refine(run, &planner, call.number);
+    if (!refined)
+        return false;
+    refined->build_ms = (*work)->build_ms;
+    glintL_work_destroy(*work);
+    *work = refined;
+    return true;
+}
+
+// Renders and reports one call unless it is rendered, or finds its files, in which case the work has no picture. A first call with an
 // undecided name is reported when the name is decided.
 static bool render_call(glintL_run *run, glintL_work *work, bool open)
 {
@@ -129,9 +161,10 @@ static bool render_call(glintL_run *run, glintL_work *work, bool open)
     glintL_naming naming = naming_of(run, &work->render, true);
     if (glintL_work_name(work, &naming, &error))
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, work->index, "%s", error.message);
+    const bool is_done = kept || work->image;
     if (!open)
-        return kept ? glintL_work_finish(run, work, true) : glintL_work_run(run, work, true);
-    if (!kept && glintL_work_render(run, work, &error))
+        return is_done ? glintL_work_finish(run, work, kept) : glintL_work_run(run, work, true);
+    if (!is_done && glintL_work_render(run, work, &error))
         return glintL_run_fail(run, glintL_run_exit_code(error.status), work->index, "%s", error.message);
     return true;
 }
@@ -194,7 +227,7 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     if (glint_camera_get(glint_scene_get(scene)->camera)->shutter > 0)
         glintL_warn_of_shutter(run);
     bool open = !run->measures && is_open(run, render);
-    bool good = render_call(run, work, open);
+    bool good = (!glintL_run_refines(run) || refine(run, scene, &work)) && render_call(run, work, open);
     if (good)
         glintL_look_for_black(run, scene, work);
     if (good && fill_handle(L, first, scene, work, open, &error))

@@ -191,6 +191,8 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->index = work->index;
     record->build_ms = work->build_ms;
     record->stats = work->stats;
+    record->samples = glintL_run_refines(run) ? work->render.desc.samples : 0;
+    record->error = work->error;
     record->film = work->film;
     memcpy(record->derivative, work->render.derivative, sizeof record->derivative);
     record->pixel_count = (double)work->stats.pixels; // kept frames have no pixels to count

@@ -11,7 +11,7 @@
 #define GLINTL_RENDER_LIST(FIELD, OPTION)                                                                               \
     FIELD(width, NUMBER, WHOLE, desc.width, 1, GLINT_SIDE_MAX, NULL)                                                    \
     FIELD(height, NUMBER, WHOLE, desc.height, 1, GLINT_SIDE_MAX, NULL)                                                  \
-    OPTION(samples, NUMBER, WHOLE, desc.samples, 1, SAMPLES_MAX, NULL, "N", "samples per pixel")                       \
+    OPTION(samples, NUMBER, WHOLE, desc.samples, 1, GLINTL_SAMPLES_MAX, NULL, "N", "samples per pixel")                       \
     OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "chooses another sample pattern")                   \
     FIELD(max_depth, NUMBER, WHOLE, desc.max_depth, 0, DEPTH_MAX, NULL)                                                 \
     OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "bits of a colour channel")                         \

@@ -9,7 +9,6 @@
 
 #define SEED_MAX 9007199254740992.0 // 2^53
 #define DEPTH_MAX 2147483648.0 // 2^31
-#define SAMPLES_MAX 65536.0
 
 typedef enum sort {
     WHOLE, // a whole number, stored as double, min .. max

@@ -8,6 +8,7 @@
 ///   derivatives.c     passes d:NAME: the slopes of a frame's scene
 ///   light_passes.c    passes light:NAME
 ///   work.c            one frame: plan, names, keys, render, hand to the writer
+///   until.c           one frame with more and more samples, until its error is small enough
 ///   provenance.c      the text entries of files, and whether files belong together; source.c the script's text
 ///   film.c            films: their frames, stored in a folder until the film is made; film_pipe.c through ffmpeg
 ///   sheet.c           contact sheets; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
@@ -170,6 +171,8 @@ typedef struct glintL_request {
     double fps; ///< frame rate of films; 0: from the script
     int threads; ///< 0: one per processor
     int repeat; ///< >= 1
+    double until; ///< error at which a frame has enough samples; 0: not given
+    double seconds; ///< time for the samples of a frame; 0: not given
     bool force, no_reuse;
     bool is_untrusted; ///< the script is; its pictures must have plain names
     char *folder; ///< owned; folder for an untrusted script's pictures; NULL: none are written
@@ -193,6 +196,7 @@ typedef struct glintL_record {
     bool kept, is_last; ///< is_last: the last of its repeats
     double build_ms, encode_ms, write_ms;
     double pixel_count;
+    double samples, error; ///< samples of a pixel and the estimated error, if the run refines frames; 0 samples: it does not
     glint_frame_stats stats;
     int files_left; ///< number of files still to be written
     bool failed;
@@ -218,6 +222,7 @@ typedef struct glintL_work {
     glint_plan *plan;
     glint_image *image; ///< NULL before rendering
     glint_frame_stats stats;
+    double error; ///< the estimate, if the run refines frames
     char *sweep; ///< owned; "name=value" lines: the frame's place in a glint.sweep; NULL: none
     struct glintL_film *film;
     int file_count;
@@ -238,6 +243,8 @@ typedef struct glintL_reporter {
     void (*figure)(void *context, const char *kind, const char *path, int64_t count);
     /// Called while a film is being made and has `done` of `count` frames. May be NULL.
     void (*making)(void *context, const char *path, size_t done, size_t count);
+    /// Called with the samples and the estimated error of a frame before it is rendered with more samples. May be NULL.
+    void (*step)(void *context, double samples, double error);
     /// Called with each rendered picture, including its linear beauty pass if the run keeps images. May be NULL.
     void (*image)(void *context, const glintL_run *run, const glintL_work *work);
     /// Called before the script runs in `L`, whose libraries are open. May raise. May be NULL.
@@ -415,6 +422,13 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
 /// Returns whether all files exist, are complete and have the work's keys. Waits for a file of the same name that is
 /// still being written.
 bool glintL_work_is_kept(glintL_run *run, const glintL_work *work);
+/// Gives the warnings about a planned frame.
+glint_status glintL_work_warn(glintL_run *run, const glintL_work *work, glint_error *error);
+/// Renders a frame. The run does not count the picture.
+glint_status glintL_work_draw(glintL_run *run, glintL_work *work, glint_error *error);
+/// Counts the brightness of a rendered frame and reports its picture.
+void glintL_work_show(glintL_run *run, const glintL_work *work);
+/// Warns about a frame, renders and shows it.
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error);
 /// Reports a frame and passes its files to the writer. False: the run has failed.
 bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
@@ -422,6 +436,25 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
 bool glintL_work_measure(glintL_run *run, glintL_work *work);
 /// Processes a whole frame: finds its files, or renders it `repeat` times, and finishes it. False: the run has failed.
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
+
+// ---- until.c ----
+
+#define GLINTL_SAMPLES_MAX 65536
+
+/// Plans one frame several times.
+typedef struct glintL_frame_planner {
+    const glintL_render *render; ///< as the script and the command line say
+    /// Plans the frame with these options; samples, seed and passes may differ from `render`. NULL: the run has failed.
+    glintL_work *(*plan)(void *context, const glintL_render *render);
+    void *context;
+} glintL_frame_planner;
+
+bool glintL_run_refines(const glintL_run *run); ///< whether the run has --until or --seconds
+/// Turns the options of a picture into those of its partner, which glint_estimate_error needs.
+void glintL_render_be_partner(glintL_render *render);
+/// Renders a frame with 2, 4, 8 ... samples until its error or the time is as requested. The caller owns the last
+/// work, which is rendered. NULL: the run has failed.
+glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner, int64_t index);
 
 // ---- brightness.c ----
 

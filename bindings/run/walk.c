@@ -318,23 +318,54 @@ glintL_work *glintL_walk_plan(glintL_walk *walk, int64_t n, int64_t number)
     return work;
 }
 
-glintL_work *glintL_walk_prepare(glintL_walk *walk, int64_t n, int64_t number)
+// Names the files of a work. NULL: the run has failed, and the work is destroyed.
+static glintL_work *name_files(glintL_walk *walk, glintL_work *work)
 {
     glint_error error;
-    glintL_work *work = glintL_walk_plan(walk, n, number);
-    if (!work || glintL_work_name(work, &walk->naming, &error) == GLINT_OK)
+    if (glintL_work_name(work, &walk->naming, &error) == GLINT_OK)
         return work;
-    glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "%s", error.message);
+    glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, work->index, "%s", error.message);
     glintL_work_destroy(work);
     return NULL;
 }
 
+glintL_work *glintL_walk_prepare(glintL_walk *walk, int64_t n, int64_t number)
+{
+    glintL_work *work = glintL_walk_plan(walk, n, number);
+    return work ? name_files(walk, work) : NULL;
+}
+
+typedef struct planned {
+    glintL_walk *walk;
+    int64_t n, number;
+} planned;
+
+static glintL_work *plan_again(void *context, const glintL_render *render)
+{
+    const planned *frame = context;
+    frame->walk->render = *render;
+    return glintL_walk_plan(frame->walk, frame->n, frame->number);
+}
+
+// Renders frame n with the samples that it needs. Returns it named; NULL: the run has failed.
+static glintL_work *refine(glintL_walk *walk, int64_t n, int64_t number)
+{
+    planned frame = { walk, n, number };
+    const glintL_render render = walk->render;
+    const glintL_frame_planner planner = { &render, plan_again, &frame };
+    glintL_work *work = glintL_refine(walk->run, &planner, number);
+    walk->render = render;
+    return work ? name_files(walk, work) : NULL;
+}
+
 bool glintL_walk_render(glintL_walk *walk, int64_t n, int64_t number)
 {
-    glintL_work *work = glintL_walk_prepare(walk, n, number);
-    const bool good = work && glintL_work_run(walk->run, work, walk->run->request.force);
+    glintL_run *run = walk->run;
+    const bool refines = glintL_run_refines(run);
+    glintL_work *work = refines ? refine(walk, n, number) : glintL_walk_prepare(walk, n, number);
+    const bool good = work && (refines ? glintL_work_finish(run, work, false) : glintL_work_run(run, work, run->request.force));
     if (good)
-        glintL_look_for_black(walk->run, glintL_walk_scene(walk), work);
+        glintL_look_for_black(run, glintL_walk_scene(walk), work);
     glintL_work_destroy(work);
     return good;
 }

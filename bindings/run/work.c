@@ -217,29 +217,46 @@ static bool is_looked_at(const glintL_run *run, const glintL_work *work)
     return work->render.desc.codes || (run->measures && strcmp(work->render.output, "none") == 0);
 }
 
-glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
+glint_status glintL_work_warn(glintL_run *run, const glintL_work *work, glint_error *error)
+{
+    warn_of_caps(run, work->plan);
+    warn_of_lens(run, work->plan);
+    warn_of_colormap(run, work);
+    return glint_plan_check_overlays(work->plan, work->render.dpi, warn_of_overlay, run, error);
+}
+
+glint_status glintL_work_draw(glintL_run *run, glintL_work *work, glint_error *error)
 {
     glint_image *image = NULL;
     if (!glintL_run_open(run, error))
         return error->status;
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, true);
-    warn_of_caps(run, work->plan);
-    warn_of_lens(run, work->plan);
-    warn_of_colormap(run, work);
-    glint_status status = glint_plan_check_overlays(work->plan, work->render.dpi, warn_of_overlay, run, error);
-    if (status == GLINT_OK)
-        status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
+    const glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, false);
     if (status == GLINT_OK) {
         glint_image_release(work->image);
         work->image = image;
-        if (is_looked_at(run, work))
-            glintL_look_at_brightness(run, image, &work->render.desc.tone);
-        if (run->reporter.image)
-            run->reporter.image(run->reporter.context, run, work);
     }
+    return status;
+}
+
+void glintL_work_show(glintL_run *run, const glintL_work *work)
+{
+    if (is_looked_at(run, work))
+        glintL_look_at_brightness(run, work->image, &work->render.desc.tone);
+    if (run->reporter.image)
+        run->reporter.image(run->reporter.context, run, work);
+}
+
+glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
+{
+    glint_status status = glintL_work_warn(run, work, error);
+    if (status == GLINT_OK)
+        status = glintL_work_draw(run, work, error);
+    if (status == GLINT_OK)
+        glintL_work_show(run, work);
     return status;
 }
 

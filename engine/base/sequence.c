@@ -72,6 +72,14 @@ void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2])
     glint_sequence_flipped(k, &flips, out);
 }
 
+void glint_sequence_shift(double seed, double out[2])
+{
+    out[0] = seed * 0x1.3c6ef372fe95p-1; // golden-ratio steps keep the shifts of neighbouring seeds far apart
+    out[1] = seed * 0x1.83b2b3de7cfacp-1;
+    for (int i = 0; i < 2; i++)
+        out[i] -= floor(out[i]);
+}
+
 void glint_sequence_point(uint32_t k, int bits, double seed, double out[2])
 {
     const double cells = (double)(1u << bits);
@@ -81,10 +89,12 @@ void glint_sequence_point(uint32_t k, int bits, double seed, double out[2])
             second ^= v;
     out[0] = (reverse(k, bits) + 0.5) / cells;
     out[1] = ((bits ? second >> (32 - bits) : 0) + 0.5) / cells;
-    if (seed > 0) { // Golden-ratio steps keep the shifts of neighbouring seeds far apart.
-        out[0] += fmod(seed * 0x1.3c6ef372fe95p-1, 1);
-        out[1] += fmod(seed * 0x1.83b2b3de7cfacp-1, 1);
-        out[0] -= floor(out[0]);
-        out[1] -= floor(out[1]);
+    if (seed > 0) {
+        double shift[2];
+        glint_sequence_shift(seed, shift);
+        for (int i = 0; i < 2; i++) {
+            out[i] += shift[i];
+            out[i] -= floor(out[i]);
+        }
     }
 }

@@ -9,6 +9,9 @@
 /// shifts them around the torus (0: no shift).
 void glint_sequence_point(uint32_t k, int bits, double seed, double out[2]);
 
+/// Computes the shift of glint_sequence_point for a seed, 0 .. 1 in both directions; seed 0: no shift.
+void glint_sequence_shift(double seed, double out[2]);
+
 /// Computes point k of Sobol's (0,2) sequence, with digits and order scrambled at random by the seed. Sequences of
 /// different seeds are independent, and each is stratified, as are any 2^m consecutive points that start at a
 /// multiple of 2^m. (A. Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995; by hashing, as in B.

@@ -1,0 +1,154 @@
+#!/usr/bin/env bash
+# --until and --seconds: the picture is the picture of --samples n, byte for byte, and the error that glint states is
+# within 1.3 of the true one.
+. tests/command/prelude.sh
+cd "$work" || exit 1
+
+cat >scene.lua <<'E2'
+local glint = require "glint"
+local P = glint.params { what = { "soft", choices = { "soft", "indirect", "checks", "lens", "sharp", "flat" } } }
+local lights = {
+  soft = glint.sphere_light { position = { 3, 5, 4 }, radius = 1, samples = 4 },
+  indirect = glint.disk_light { position = { 3, 5, 4 }, normal = { -3, -5, -4 }, radius = 1, samples = 4 },
+}
+local floor = glint.material { diffuse = P.what ~= "checks" and 0.8 or glint.pattern(function(p)
+  return glint.select(glint.less((glint.floor(p.x) + glint.floor(p.z)) % 2, 0.5), 0.9, 0.1) end) }
+local light = lights[P.what] or glint.point_light { position = { 3, 5, 4 } }
+local camera = glint.camera { eye = { 0, 2, 7 }, at = { 0, 0.8, 0 }, fov = 40, aperture = P.what == "lens" and 0.2 or 0 }
+local scene = glint.scene { camera = camera, ambient = 0.1, background = 0.3, light }
+if P.what ~= "flat" then
+  scene:add(glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = floor })
+  scene:add(glint.box { min = { -2, 0, -1 }, max = { -0.7, 1.5, 0.3 } })
+  scene:add(glint.sphere { center = { 0.8, 0.8, 0 }, radius = 0.8 })
+end
+if P.what == "indirect" then scene.indirect = { samples = 4, bounces = 2 } end
+return glint.animation { scene = scene, frames = 2, width = 60, height = 40, samples = 3,
+  frame = function(t) light.position = { 3 - t, 5, 4 } end }
+E2
+
+# number FIELD: of the last frame event
+number() { sed -n "s/.*\"event\":\"frame\".*\"$1\":\([0-9.e-]*\).*/\1/p" out | tail -n 1; }
+
+# ---- The picture ----
+
+for until in 0.02 0.006; do
+    exits 0 "until $until" scene.lua -f 1-2 --until $until --json -o 'a_%d.png' --passes depth,diffuse
+    n=$(number samples)
+    check "until $until: the error is below it" awk -v e="$(number error)" "BEGIN { exit !(e > 0 && e <= $until) }"
+    exits 0 "samples $n" scene.lua -f 2 --samples "$n" -o 'b_%d.png' --passes depth,diffuse -q
+    for pass in '' .depth .diffuse; do check "until $until: samples $n$pass" cmp a_2$pass.png b_2$pass.png; done
+done
+check "more samples for a smaller error" test "$n" -gt 2
+exits 0 "an exr" scene.lua -f 2 --until 0.006 -o 'a_%d.exr' --passes normal -q
+exits 0 "its samples" scene.lua -f 2 --samples "$n" -o 'b_%d.exr' --passes normal -q
+check "an exr has the same bytes" cmp a_2.exr b_2.exr
+exits 0 "reproduce" reproduce a_2.png scene.lua
+exits 0 "a part" scene.lua -f 2 --until 0.006 --region 20,10,30,20 --json -o 'part_%d.png'
+n=$(number samples)
+exits 0 "the part's samples" scene.lua -f 2 --samples "$n" --region 20,10,30,20 -q -o 'whole_%d.png'
+check "a part has the same bytes" cmp part_2.png whole_2.png
+exits 0 "a film" scene.lua --until 0.02 --json -o film.apng
+check "each frame of a film has its samples" test "$(grep -c '"samples":[0-9]*,"error":0.0' out)" -eq 2
+
+cat >loop.lua <<'E2'
+local glint = require "glint"
+local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1 }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, ambient = 0.1, ball,
+  glint.point_light { position = { 5, 5, 5 } } }
+for i = 1, 2 do
+  ball.radius = i
+  print((scene:render { width = 30, height = 20, output = ("loop_%d.png"):format(i) }:pixel(10, 10)))
+end
+E2
+exits 0 "a loop of calls" loop.lua --until 0.01 -q
+mv out light
+mkdir until && mv loop_?.png until
+exits 0 "the loop's samples" loop.lua -q --samples "$(sed -n 's/^samples=//p' <(strings until/loop_1.png) | head -n 1)"
+check "a call has the bytes of its samples" cmp until/loop_1.png loop_1.png
+check "the script sees the same picture" cmp <(head -n 1 light) <(head -n 1 out)
+exits 0 "a loop with numbered names" loop.lua --until 0.01 -o named.png --json
+check "both calls have a name" test -e named_0001.png -a -e named_0002.png
+exits 0 "a shutter" "$root/scripts/shutter.lua" -f 2 --size 60x40 --until 0.02 --json -o 'open_%d.png'
+n=$(number samples)
+exits 0 "a shutter's samples" "$root/scripts/shutter.lua" -f 2 --size 60x40 --samples "$n" -q -o 'shut_%d.png'
+check "a shutter's picture" cmp open_2.png shut_2.png
+exits 0 "a sweep" scene.lua --sweep what=soft,flat -f 1,3 --until 0.02 --json -o 'sweep_%d.png'
+check "a picture without noise has the least samples" test "$(number samples)" -eq 2
+
+# ---- The error ----
+
+cat >rmse.lua <<'E2' # the root of the mean squared difference between a file and the mean of other files
+local glint = require "glint"
+local function read(path)
+  local floats, values = glint.read_image(path), {}
+  for y = 0, floats.height - 1 do for x = 0, floats.width - 1 do
+    for _, v in ipairs { floats:pixel(x, y) } do values[#values + 1] = v end
+  end end
+  return values
+end
+local picture, sum, references = read(arg[1]), 0, {}
+for i = 2, #arg do references[i - 1] = read(arg[i]) end
+for k = 1, #picture do
+  local mean = 0
+  for _, reference in ipairs(references) do mean = mean + reference[k] / #references end
+  sum = sum + (picture[k] - mean) ^ 2
+end
+print(("%.7f"):format((sum / #picture) ^ 0.5))
+os.exit(true)
+E2
+for what in soft indirect checks lens sharp; do
+    for seed in 5 6 7; do
+        exits 0 "$what: reference" scene.lua -f 2 --set what=$what --samples 512 --seed $((seed * 1000)) -q -o "ref_${seed}_%d.pfm"
+    done
+    for most in 2 4 8 16 32; do
+        exits 0 "$what $most" scene.lua -f 2 --set what=$what --until 1e-9 --samples $most --seed $((most / 8)) --json -o 'p_%d.pfm'
+        says "$what $most" "frame 2: --until: the error is [0-9.]*, above 1e-09, after $most samples, the most; use more --samples"
+        stated=$(number error)
+        true=$("$glint" rmse.lua -q -- p_2.pfm ref_{5,6,7}_2.pfm)
+        check "$what, $most samples: the error is $true, glint says $stated" \
+            awk -v s="$stated" -v t="$true" 'BEGIN { exit !(s < 1.3 * t && t < 1.3 * s) }'
+    done
+done
+
+# ---- Time ----
+
+began=$(date +%s%N)
+exits 0 "seconds" scene.lua -f 2 --set what=indirect --size 120x80 --seconds 1.5 --json -o 'time_%d.png'
+ms=$((($(date +%s%N) - began) / 1000000)) n=$(number samples)
+check "more samples than the first picture has" test "$n" -ge 4
+check "no step is begun that cannot end in time: $ms ms" test "$ms" -lt 6000 # the machine may be busy
+exits 0 "the samples of the time" scene.lua -f 2 --set what=indirect --size 120x80 --samples "$n" -q -o 'n_%d.png'
+check "the picture of the time has the bytes of its samples" cmp time_2.png n_2.png
+exits 0 "an error and a time" scene.lua -f 2 --until 1e-9 --seconds 0.05 -o 'both_%d.png'
+says "an error and a time" 'frame 2: --until: the error is .* after [0-9]* samples, the most in 0.05 seconds'
+says "the line of a frame" '^frame 2: both_2.png, .* ms, [0-9]* samples, error 0\.[0-9]*$'
+
+# SIGINT ends the frame, and no file of it is left.
+rm -f int_*
+"$glint" scene.lua -f 2 --size 600x400 --until 1e-9 -o 'int_%d.png' -q 2>err &
+pid=$!
+sleep 0.5
+kill -INT $pid
+wait $pid
+[ $? -eq 130 ]
+result $? "SIGINT: exit 130"
+check "SIGINT leaves no picture" test -z "$(find . -name 'int_*' -o -name '.*int_*')"
+
+# ---- Refusals ----
+
+exits 2 "repeat" scene.lua --until 0.01 --repeat 2
+says "repeat" '--until: not with --repeat'
+exits 2 "auto" scene.lua --seconds 2 --exposure auto
+says "auto" '--seconds: not with --exposure auto, which measures pictures with other samples; expected a number of stops'
+exits 2 "colours" scene.lua --until 0.1 --colormap viridis:auto
+says "colours" '--until: not with --colormap auto.*expected NAME:LOW:HIGH'
+exits 2 "one sample" scene.lua --until 0.1 --samples 1
+says "one sample" "--samples: expected at least 2 with --until, got '1'"
+for value in 0 -1 x; do
+    exits 2 "until $value" scene.lua --until $value
+    says "until $value" "--until: error of linear light > 0 expected, got '$value'"
+    exits 2 "seconds $value" scene.lua --seconds $value
+done
+exits 2 "another command" explain scene.lua --until 0.1
+
+totals
