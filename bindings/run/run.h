@@ -274,6 +274,8 @@ struct glintL_run {
     bool keeps_images; ///< every picture includes its linear beauty pass
     int preview_side; ///< > 0: limit of the longer side of pictures, which have one sample per pixel
     bool was_shrunk; ///< preview_side made the picture smaller
+    double most_samples; ///< > 0: limit of the samples of a pixel
+    bool renders_partner; ///< pictures are the partners of those that are wanted, for glint_estimate_error
     bool is_dialect; ///< the script is in a dialect, where the functions that warnings name have other names
     bool is_command; ///< run by the command: its options override the script's; files are written in the background
     glintL_mode mode;

@@ -27,9 +27,7 @@ void glintL_render_be_partner(glintL_render *render)
     render->desc.derivative_count = 0;
     render->light_passes[0] = '\0';
     render->desc.light_passes = NULL;
-    render->desc.codes = false;
     render->desc.outline = GLINT_OUTLINE_NONE;
-    snprintf(render->output, sizeof render->output, "partner.pfm"); // linear light, and no file is written
 }
 
 static glintL_work *fail_render(ladder *l, glintL_work *work, const glint_error *error)
@@ -60,6 +58,7 @@ static glintL_work *step(ladder *l, double samples)
     if (!work)
         return NULL;
     glintL_render_be_partner(&render);
+    snprintf(render.output, sizeof render.output, "partner.pfm"); // without pixel values; no file is written
     glintL_work *partner = draw(l, &render);
     const bool good = partner && (glint_estimate_error(work->image, partner->image, &work->error, &error) == GLINT_OK ||
                                   fail_render(l, NULL, &error));

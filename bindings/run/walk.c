@@ -34,8 +34,13 @@ void glintL_run_apply(glintL_run *run, glintL_render *render)
     for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
         if (run->request.render_text[field]) // it was checked when it was read
             glintL_render_set_text(render, field, run->request.render_text[field], message);
+    render->own_samples = render->desc.samples;
     if (run->preview_side > 0)
         shrink(run, &render->desc);
+    if (run->most_samples > 0)
+        render->desc.samples = fmin(render->desc.samples, run->most_samples);
+    if (run->renders_partner)
+        glintL_render_be_partner(render);
     if (run->measures)
         memset(render->desc.region, 0, sizeof render->desc.region);
 }

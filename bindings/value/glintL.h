@@ -399,6 +399,7 @@ typedef struct glintL_render {
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the passes d:NAME to write
     int derivative_count;
     char light_passes[4096]; ///< names of the passes light:NAME to write, separated by commas; see glintL_render_point
+    double own_samples; ///< samples of a pixel before the limits of a preview
 } glintL_render;
 
 // ---- state.c: the current run. One per lua_State, in the registry; plain Lua has one with no options ----

@@ -1,7 +1,8 @@
 // glint watch SCRIPT: renders at every save, in the terminal and on a page.
 //
-// A change is shown twice: first as a small preview with one sample per pixel, then at full quality. Each has a
-// renderer that lives across runs, so that results which a change does not affect are reused.
+// A change is shown first as a small preview with one sample per pixel. If the full picture takes time, pictures with 1,
+// 2, 4 ... samples follow. The last picture has full quality. Preview and full picture have renderers that live across
+// runs, so that results which a change does not affect are reused; the steps between have a renderer without reuse.
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -14,13 +15,14 @@
 #include "bindings/watch/watch.h"
 
 #define PREVIEW_SIDE 640
+#define STEPS_LEAST_MS 100 // a picture that takes less time is shown without steps
 #define STEPS_BETWEEN_LOOKS 10000 // instructions of the script between two checks
 
 static const char watch_track_lua[] = {
 #include "bindings/watch/track.lua.h"
 };
 
-typedef enum quality { PREVIEW, FULL } quality;
+typedef enum quality { PREVIEW, STEP, FULL, QUALITIES } quality;
 
 typedef struct watcher {
     cli_options *options;
@@ -31,7 +33,7 @@ typedef struct watcher {
     watch_files *files;
     watch_server *server; // NULL: no page
     watch_terminal terminal;
-    glint_renderer *renderers[2]; // renderers by quality; the run owns the renderer in use
+    glint_renderer *renderers[QUALITIES]; // renderers by quality; the run owns the renderer in use
     glintL_set *given; // from the command line
     size_t given_count;
     quality now;
@@ -43,9 +45,13 @@ typedef struct watcher {
     int64_t calls; // number of calls of scene:render in the script; the frames of its jobs have higher numbers
     int width, height;
     double ms;
-    bool is_preview;
+    bool is_preview, no_reuse; // no_reuse: from the command line
+    double samples, own_samples, error; // the picture's samples per pixel, the script's, and the estimate; < 0: unknown
+    double render_ms, full_ms; // time to render the last picture, and the last full picture; 0: unknown
+    glint_image *image; // the picture now shown; owned
+    watch_picture *picture; // the same, for the terminal; owned
     char *params; // JSON from the last good run; owned
-    char error[GLINTL_MESSAGE_SIZE]; // "": the last run was good
+    char failure[GLINTL_MESSAGE_SIZE]; // "": the last run was good
     char warnings[GLINTL_MESSAGE_SIZE]; // warnings of the last run, one per line
 } watcher;
 
@@ -63,12 +69,14 @@ static char *make_state(const watcher *w)
     glintL_json_string(out, w->run->script);
     fprintf(out,
             ",\"frame\":%" PRId64 ",\"frames\":%" PRId64 ",\"picture\":%" PRId64
-            ",\"width\":%d,\"height\":%d,\"preview\":%s,\"ms\":%.3f,\"params\":%s",
-            w->frame, w->frames, w->pictures, w->width, w->height, w->is_preview ? "true" : "false", w->ms,
+            ",\"width\":%d,\"height\":%d,\"preview\":%s,\"samples\":%.0f,\"ms\":%.3f,\"params\":%s",
+            w->frame, w->frames, w->pictures, w->width, w->height, w->is_preview ? "true" : "false", w->samples, w->ms,
             w->params ? w->params : "[]");
-    if (*w->error) {
+    if (w->error >= 0)
+        fprintf(out, ",\"estimate\":%.3g", w->error);
+    if (*w->failure) {
         fputs(",\"error\":", out);
-        glintL_json_string(out, w->error);
+        glintL_json_string(out, w->failure);
     }
     if (*w->warnings) {
         fputs(",\"warnings\":", out);
@@ -89,8 +97,8 @@ static void publish(watcher *w, watch_picture *picture)
 static void print_picture_event(watcher *w)
 {
     FILE *out = w->output->data;
-    fprintf(out, "{\"event\":\"picture\",\"index\":%" PRId64 ",\"width\":%d,\"height\":%d,\"preview\":%s,\"ms\":%.3f}",
-            w->frame, w->width, w->height, w->is_preview ? "true" : "false", w->ms);
+    fprintf(out, "{\"event\":\"picture\",\"index\":%" PRId64 ",\"width\":%d,\"height\":%d,\"preview\":%s,\"samples\":%.0f,\"ms\":%.3f}",
+            w->frame, w->width, w->height, w->is_preview ? "true" : "false", w->samples, w->ms);
     cli_end_line(w->output);
 }
 
@@ -106,7 +114,7 @@ static void tell_change(watcher *w, const char *path)
 
 static void tell_error(watcher *w, const char *message)
 {
-    snprintf(w->error, sizeof w->error, "%s", message);
+    snprintf(w->failure, sizeof w->failure, "%s", message);
     publish(w, NULL);
     watch_terminal_error(&w->terminal, message);
     if (!w->output->json)
@@ -119,38 +127,79 @@ static void tell_error(watcher *w, const char *message)
 
 // ---- The run's reporter ----
 
+// Draws the picture with a line about it. On a terminal without graphics there are only lines, about full pictures.
+static void draw(watcher *w)
+{
+    char line[GLINTL_MESSAGE_SIZE + 512], of[32] = "", samples[64] = ""; // a loop counts its calls only while it runs
+    if (w->output->quiet || (w->is_preview && w->terminal.graphics == WATCH_TEXT))
+        return;
+    if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
+        snprintf(of, sizeof of, " of %" PRId64, w->frames);
+    if (w->samples > 1)
+        snprintf(samples, sizeof samples, w->error >= 0 ? ", %.0f samples, error %.2g" : ", %.0f samples", w->samples, w->error);
+    snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s%s, %.0f ms after the %s%s%s", w->run->script,
+             w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", samples, w->ms,
+             w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
+    watch_terminal_draw(&w->terminal, w->picture, line);
+}
+
+// Shows the estimated error of the picture now shown, from its partner.
+static void show_error(watcher *w, const glint_image *partner)
+{
+    glint_error error;
+    if (glint_estimate_error(w->image, partner, &w->error, &error)) {
+        glintL_run_fail(w->run, GLINTL_EXIT_FAILED, w->frame, "%s", error.message);
+        return;
+    }
+    publish(w, NULL);
+    if (w->output->json) {
+        fprintf(w->output->data, "{\"event\":\"estimate\",\"index\":%" PRId64 ",\"samples\":%.0f,\"error\":%.6g}", w->frame,
+                w->samples, w->error);
+        cli_end_line(w->output);
+    }
+    draw(w);
+}
+
+// Takes over the picture.
+static void keep_picture(watcher *w, watch_picture *picture, glint_image *image)
+{
+    watch_picture_release(w->picture);
+    glint_image_release(w->image);
+    w->picture = picture;
+    w->image = image;
+}
+
 static void show(void *context, const glintL_run *run, const glintL_work *work)
 {
     watcher *w = context;
     glint_error error;
-    char line[GLINTL_MESSAGE_SIZE + 512];
-    (void)run;
+    w->shown = true;
+    if (run->renders_partner) {
+        show_error(w, work->image);
+        return;
+    }
     watch_picture *picture = watch_picture_create(work->image, &work->render, &error);
     if (!picture) {
         glintL_run_fail(w->run, GLINTL_EXIT_FAILED, work->index, "%s", error.message);
         return;
     }
-    w->shown = true;
-    w->is_preview = w->now == PREVIEW && w->run->was_shrunk;
+    keep_picture(w, picture, glint_image_retain(work->image));
+    w->is_preview = w->now == STEP || (w->now == PREVIEW && w->run->was_shrunk);
     w->frame = work->index;
     w->frames = w->frames > work->index ? w->frames : work->index;
     w->width = glint_image_width(work->image);
     w->height = glint_image_height(work->image);
+    w->samples = work->render.desc.samples;
+    w->own_samples = work->render.own_samples;
+    w->error = -1;
+    w->render_ms = work->stats.render_ms;
     w->ms = glintL_now_ms() - w->since_ms;
     w->pictures++;
-    w->error[0] = '\0';
+    w->failure[0] = '\0';
     publish(w, picture);
     if (w->output->json)
         print_picture_event(w);
-    char of[32] = ""; // a loop counts its calls only while it runs
-    if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
-        snprintf(of, sizeof of, " of %" PRId64, w->frames);
-    snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s, %.0f ms after the %s%s%s", w->run->script,
-             w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", w->ms,
-             w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
-    if (!w->output->quiet && !(w->is_preview && w->terminal.graphics == WATCH_TEXT))
-        watch_terminal_draw(&w->terminal, picture, line);
-    watch_picture_release(picture);
+    draw(w);
 }
 
 static void around_render(void *context, const glintL_run *run, bool begins)
@@ -164,12 +213,12 @@ static void around_render(void *context, const glintL_run *run, bool begins)
     }
 }
 
-// Shows a warning below the picture. The full run does not repeat the warnings of its preview.
+// Shows a warning below the picture. Later runs do not repeat the warnings of the preview.
 static void warn(void *context, const char *message)
 {
     watcher *w = context;
     size_t used = strlen(w->warnings);
-    if (w->now == FULL)
+    if (w->now != PREVIEW)
         return;
     snprintf(w->warnings + used, sizeof w->warnings - used, "%swarning: %s", used ? "\n" : "", message);
     cli_warning_event(w->output, message);
@@ -298,6 +347,7 @@ static void begin_run(watcher *w, quality now)
     glintL_run_reset(run);
     run->mode = GLINTL_MODE_WATCH;
     run->preview_side = now == PREVIEW ? PREVIEW_SIDE : 0;
+    run->request.no_reuse = w->no_reuse || now == STEP;
     w->shown = false;
     if (now == PREVIEW)
         w->warnings[0] = '\0';
@@ -363,17 +413,58 @@ static bool render(watcher *w, quality now, bool run_again)
     return glintL_run_collect(w->run, true) && good;
 }
 
+static bool is_superseded(watcher *w) { return watch_requests_waiting(&w->requests) || w->run->interrupted; }
+
+// Renders the frame of jobs with at most `samples`, or its partner. False: an error, or a newer request.
+static bool render_step(watcher *w, double samples, bool is_partner)
+{
+    w->run->most_samples = samples;
+    w->run->renders_partner = is_partner;
+    const bool good = !is_superseded(w) && render(w, STEP, false);
+    w->run->most_samples = 0;
+    w->run->renders_partner = false;
+    return good;
+}
+
+// Shows pictures with 1, 2, 4 ... samples, below the script's own number, and their errors. False: an error, or a newer
+// request.
+static bool show_steps(watcher *w)
+{
+    if (w->full_ms > 0 && w->full_ms < STEPS_LEAST_MS)
+        return true;
+    for (double samples = 1; samples < w->own_samples; samples *= 2) {
+        if (!render_step(w, samples, false))
+            return false;
+        if (samples == 1 && w->render_ms * w->own_samples < STEPS_LEAST_MS)
+            return true;
+        if (samples > 1 && !render_step(w, samples, true))
+            return false;
+    }
+    return true;
+}
+
+// Shows the full picture, with steps before it and its error after it if the frame is a job's. A loop of calls would
+// run as a whole for each picture. False: an error, or a newer request.
+static bool show_full(watcher *w)
+{
+    const bool is_job = w->script.has_jobs && w->calls == 0;
+    if ((is_job && w->own_samples > 1 && !show_steps(w)) || is_superseded(w) || !render(w, FULL, false))
+        return false;
+    w->full_ms = w->render_ms;
+    return !is_job || w->samples < 2 || render_step(w, w->samples, true);
+}
+
 static void answer(watcher *w, bool run_again)
 {
     w->differs = false;
     bool good = render(w, PREVIEW, run_again);
-    if (good && w->differs && !watch_requests_waiting(&w->requests) && !w->run->interrupted)
-        good = render(w, FULL, false);
-    if (good && *w->error) { // the error is fixed, with nothing new to show
-        w->error[0] = '\0';
+    if (good && w->differs && !is_superseded(w))
+        good = show_full(w);
+    if (good && *w->failure) { // the error is fixed, with nothing new to show
+        w->failure[0] = '\0';
         publish(w, NULL);
     }
-    if (!good && !watch_requests_waiting(&w->requests) && !w->run->interrupted)
+    if (!good && !is_superseded(w))
         tell_error(w, w->run->message);
 }
 
@@ -401,6 +492,7 @@ static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
     run->request.force = true;
     run->request.render_text[glintL_render_find("output")] = "none";
     run->keeps_images = true;
+    w->no_reuse = run->request.no_reuse;
     run->reporter = (glintL_reporter) {
         .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare, .reads = note_mesh
     };
@@ -416,8 +508,9 @@ static void close_watcher(watcher *w)
     watch_server_destroy(w->server);
     watch_requests_close(&w->requests);
     watch_terminal_close(&w->terminal);
-    glint_renderer_destroy(w->renderers[PREVIEW]);
-    glint_renderer_destroy(w->renderers[FULL]);
+    for (int i = 0; i < QUALITIES; i++)
+        glint_renderer_destroy(w->renderers[i]);
+    keep_picture(w, NULL, NULL);
     free(w->given);
     free(w->params);
 }

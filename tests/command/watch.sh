@@ -300,6 +300,42 @@ check "a call among jobs" await '"index":2,"width":64,' 1 events5
 ask POST "${path}frame" 9 >/dev/null
 check "the last of all" await '"index":5,"width":32,' 1 events5
 
+# ---- More and more samples ----
+
+cat >slow.lua <<'END'
+local glint = require "glint"
+local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 7 }, at = { 0, 0.8, 0 } }, ambient = 0.1, indirect = { samples = 6 },
+  glint.sphere_light { position = { 3, 5, 4 }, radius = 1, samples = 8 }, glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } },
+  glint.sphere { center = { 0, 1, 0 }, radius = 1 } }
+return glint.animation { scene = scene, frames = 2, width = 300, height = 200, samples = 16, frame = function() end }
+END
+timeout 120 "$glint" watch slow.lua --http --json >events6 2>err6 </dev/null &
+watchers+=($!)
+await '"event":"estimate".*"samples":16,' 1 events6 || await '"event":"estimate".*"samples":16,' 1 events6
+samples() { sed -n "s/.*\"event\":\"$1\".*\"samples\":\([0-9]*\).*/\1/p" events6 | tr '\n' ' '; }
+check "pictures with 1, 2, 4 ... samples" is "1 1 2 4 8 16 " "$(samples picture)"
+check "their errors" is "2 4 8 16 " "$(samples estimate)"
+check "all but the last are previews" is 1 "$(grep -c '"preview":false,"samples":16' events6)"
+host=$(sed -n 's/.*"url":"http:\/\/\([^/]*\).*/\1/p' events6) path=$(sed -n 's/.*"url":"http:\/\/[^/]*\(\/[^"]*\)".*/\1/p' events6)
+port=${host#*:}
+ask GET "${path}picture" "" | LC_ALL=C sed '1,/^\r$/d' >last.png
+"$glint" slow.lua -f 1 --quiet -o 'slow_%d.png'
+check "the last one is the picture" "$glint" compare last.png slow_1.png --fail 0 --warn 0
+check "the line has samples and error" grep -q '^slow.lua, frame 1 of 2: 300 x 200, 16 samples, error 0\.[0-9]*, ' err6
+exec 6<>"/dev/tcp/127.0.0.1/$port"
+printf 'GET %sevents HTTP/1.1\r\nHost: %s\r\n\r\n' "$path" "$host" >&6
+timeout 30 cat <&6 >stream6 &
+check "the page gets samples and error" await '"samples":16,.*"estimate":0\.[0-9]*' 1 stream6
+kill $!
+exec 6<&- 6>&-
+sed 's/samples = 8/samples = 9/' slow.lua >copy && cat copy >slow.lua
+await '"event":"picture".*"samples":2,' 2 events6
+sed 's/samples = 9/samples = 8/' slow.lua >copy && cat copy >slow.lua
+check "a save stops the steps" await '"event":"change"' 2 events6
+await '"event":"picture".*"samples":16,' 2 events6 || await '"event":"picture".*"samples":16,' 2 events6
+check "and begins anew" is "1 1 2 " "$(samples picture | tail -c 19 | head -c 6)"
+check "and no other picture came to its end" is 2 "$(grep -c '"event":"picture".*"samples":16,' events6)"
+
 # ---- Output to a terminal ----
 
 cat >still.lua <<'END'
