@@ -117,8 +117,12 @@ ifeq ($(SANITIZE)$(WASM),)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
 
-# WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
-DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
+# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): no other
+# object changes. WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
+EFFECTS  := $(filter-out adaptive pattern translucent,$(notdir $(patsubst %/,%,$(wildcard engine/effects/*/))))
+LEFT_OUT := $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT)))
+PARTS_OUT := $(filter-out all $(EFFECTS),$(WITHOUT))
+DEFINES += $(PARTS_OUT:%=-DGLINT_WITH_%=0) $(if $(PARTS_OUT),-Wno-type-limits)
 
 # PORTABLE=1 builds here as for other machines:
 # generic kernels, POSIX instead of inotify, eventfd etc., and no --untrusted.
@@ -170,7 +174,11 @@ FLOAT        ?= yes
 NO_FLOAT     := $(if $(FLOAT),,-DGLINT_NO_FLOAT)
 STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 $(FLOAT:%=f32),$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
 ENGINE_SRC   := $(filter-out $(STAGE_SRC),$(ENGINE_SRC))
-ENGINE_OBJ   := $(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o)
+# without EFFECTS: the other sources
+without       = $(filter-out $(foreach effect,$(1),engine/effects/$(effect)/%) $(if $(1),,engine/effects/left_out.c),$(ENGINE_SRC))
+ENGINE_OBJ   := $(STAGE_OBJ) $(patsubst %.c,$(BUILD)/%.o,$(call without,$(LEFT_OUT)))
+CORE         := $(BUILD)/without/effects
+CORE_OBJ     := $(STAGE_OBJ) $(patsubst %.c,$(BUILD)/%.o,$(filter-out %/left_out.c,$(call without,$(EFFECTS)))) $(CORE)/left_out.o
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
@@ -224,6 +232,8 @@ $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-ou
 $(UNROLLED:%.c=$(BUILD)/%.o): OWN := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
 $(BUILD)/engine/stages/simd/select.o: $(BUILD)/kernels
+$(BUILD)/engine/effects/left_out.o: OWN := $(LEFT_OUT:%=-DGLINT_LACKS_%)
+$(BUILD)/engine/effects/left_out.o $(BUILD)/libglint.a: $(BUILD)/effects
 $(BUILD)/engine/text/letters.o: OWN := $(FONT_CFLAGS)
 $(BUILD)/engine/file/pdf.o: OWN := $(CAIRO_CFLAGS)
 $(BUILD)/engine/file/jpeg.o: OWN := $(JPEG_CFLAGS)
@@ -287,17 +297,19 @@ $(BUILD)/$(SHARED): $(ENGINE_OBJ) $(BUILD)/libglint.map
 shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
 # When flags or libraries change, everything is compiled again.
-# When only KERNELS or FLOAT changes, only the tables of kernels (select.c, table.c) are.
+# When only KERNELS or FLOAT changes, only the tables of kernels (select.c, table.c) are. When other effects are left
+# out, the libraries are made again.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS) $(FLOAT)
-$(BUILD)/flags $(BUILD)/kernels: FORCE
+$(BUILD)/effects: SAID = $(LEFT_OUT)
+$(BUILD)/flags $(BUILD)/kernels $(BUILD)/effects: FORCE
 	@mkdir -p $(@D)
 	@echo '$(SAID)' | cmp -s - $@ || echo '$(SAID)' > $@
 
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(CORE)/left_out.d $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # ---- Tests ----
 
@@ -319,10 +331,21 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) -D_GNU_SOURCE -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
-tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
+# The command without effects, of the same objects.
+$(CORE)/left_out.o: engine/effects/left_out.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(HARDEN) $(EFFECTS:%=-DGLINT_LACKS_%) -MMD -MP -c $< -o $@
+$(CORE)/glint: $(BINDINGS_OBJ) $(CORE_OBJ)
+	$(call say,LINK)
+	@rm -f $(@D)/libglint.a
+	$(Q)$(AR) qcs $(@D)/libglint.a $(CORE_OBJ)
+	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(@D)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) $(LIB_DL) -o $@
+
+tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN) $(CORE)/glint
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects exposure faults films gallery golden inputs install kills memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects exposure faults films gallery golden inputs install kills left_out memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

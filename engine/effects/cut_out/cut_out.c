@@ -35,9 +35,13 @@ struct glint_cut_out {
     uint16_t begun[GLINT_TILE_GROUPS]; ///< lanes whose ray still starts at its first origin
 };
 
-struct glint_cut_out *glint_cut_out_create(void) { return glint_alloc(1, sizeof(struct glint_cut_out)); }
+static void *create(const glint_plan *plan)
+{
+    (void)plan;
+    return glint_alloc(1, sizeof(struct glint_cut_out));
+}
 
-void glint_cut_out_destroy(struct glint_cut_out *cut_out) { free(cut_out); }
+static struct glint_cut_out *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_CUT_OUT]; }
 
 // ---- Holes ----
 
@@ -61,11 +65,11 @@ static void find_material_holes(glint_tile *tile, const glint_tile_frame *frame,
     if (!program)
         return;
     glint_pattern_gather(&pattern->inputs, frame, points, program->inputs, entries, count);
-    glint_program_args args = { .group_count = count, .wanted = wanted, .result = { pattern->cut_out->opacity } };
+    glint_program_args args = { .group_count = count, .wanted = wanted, .result = { own_of(tile)->opacity } };
     glint_pattern_call(pattern, frame, &program->code, 0, &args);
     for (uint32_t k = 0; k < count; k++)
         for (unsigned bits = wanted[k]; bits; bits &= bits - 1)
-            if (!(pattern->cut_out->opacity[k * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)] >= 0.5))
+            if (!(own_of(tile)->opacity[k * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)] >= 0.5))
                 holes[entries[k].group] |= (uint16_t)(bits & -bits);
 }
 
@@ -328,7 +332,7 @@ static void see_all_from_origin(struct glint_cut_out *cut, glint_tile *tile, con
 static void see_through(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
-    struct glint_cut_out *cut = tile->pattern->cut_out;
+    struct glint_cut_out *cut = own_of(tile);
     if (!begin_seeing(cut, tile, frame))
         return;
     for (int k = 0; k < HOLES_MAX && !glint_tile_cancelled(frame); k++) {
@@ -434,7 +438,7 @@ static bool go_on(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_
 static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                        uint16_t *unoccluded)
 {
-    struct glint_cut_out *cut = tile->pattern->cut_out;
+    struct glint_cut_out *cut = own_of(tile);
     if (!begin_lighting(cut, tile, frame, light, middle, lit, unoccluded))
         return;
     for (int k = 0; k < HOLES_MAX && go_on(cut, tile, frame, light, middle, unoccluded); k++)
@@ -447,4 +451,7 @@ const glint_stage glint_stage_cut_out = {
     .called = glint_plan_cuts,
     .step[GLINT_AT_CAST] = see_through,
     .admit = open_holes,
+    .create = create,
+    .destroy = free,
+    .shared = true,
 };

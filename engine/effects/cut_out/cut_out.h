@@ -4,8 +4,6 @@
 
 #include "engine/effects/pattern/pattern.h"
 
-struct glint_cut_out *glint_cut_out_create(void);
-void glint_cut_out_destroy(struct glint_cut_out *cut_out); ///< NULL: nothing
 
 /// Finds the points on surfaces that are in holes, one bit per lane.
 void glint_tile_find_holes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,

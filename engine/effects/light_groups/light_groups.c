@@ -11,14 +11,12 @@
 #define ROUNDING 0x1p-40
 #define ROUNDING_OF_POINTS 0x1p-22
 
-enum { DIFFUSE, SPECULAR, OTHER, SUMS }; ///< OTHER: everything except light of lamps on the tile's own hits
-
-typedef double term_sums[SUMS][3][GLINT_TILE_SAMPLES];
+enum { DIFFUSE, SPECULAR, OTHER, SUMS = GLINT_GROUP_SUMS }; ///< OTHER: everything except light of lamps on the tile's own hits
 
 struct glint_group_sums {
+    glint_group_terms *sum; ///< sums of each group; first: see glint_group_sum
     _Alignas(64) double local[GLINT_TERM_LOCAL][3][GLINT_TILE_SAMPLES]; ///< terms of one call of shade without lights
     uint32_t count, pass_count;
-    term_sums *sum; ///< sums of each group
     double (*faded)[3][GLINT_TILE_SAMPLES]; ///< for each group, over the finished samples; NULL: nothing fades
     float (*mean)[3][GLINT_TILE_SAMPLES]; ///< mean light of each pass
     struct glint_group_sums *batch,
@@ -107,11 +105,6 @@ static void begin(glint_tile *tile, const glint_tile_frame *frame, glint_shade_a
         for (int k = 0; k < SUMS; k++)
             for (int c = 0; c < 3; c++)
                 memset(own_of(tile)->sum[g][k][c], 0, size);
-}
-
-double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES]
-{
-    return own_of(tile)->sum[group];
 }
 
 void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3])

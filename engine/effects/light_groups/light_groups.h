@@ -10,6 +10,11 @@
 #include "engine/plan/light_groups.h"
 #include "engine/tile/batch.h"
 
+#define GLINT_GROUP_SUMS 3 ///< diffuse, specular and other light
+
+/// Sums of the light of a group.
+typedef double glint_group_terms[GLINT_GROUP_SUMS][3][GLINT_TILE_SAMPLES];
+
 /// Returns the sums for a batch of a tile; points: those for faces and vertices. NULL in frames without light passes.
 struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points);
 
@@ -17,7 +22,11 @@ struct glint_group_sums *glint_group_sums_of(const glint_tile *to, bool points);
 void glint_groups_shade_one(glint_tile *tile, const glint_tile_frame *frame, const glint_shade_args *args,
                             uint32_t group);
 /// Returns the sums of a group's diffuse and specular light.
-double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES];
+static inline double (*glint_group_sum(const glint_tile *tile, uint32_t group))[3][GLINT_TILE_SAMPLES]
+{
+    glint_group_terms *const *sums = tile->own[GLINT_STAGE_LIGHT_GROUPS]; // the stage's memory begins with them
+    return (*sums)[group];
+}
 /// Adds `light` of a visible light of this group to pixel i.
 void glint_groups_add(const glint_tile *tile, uint32_t group, uint32_t i, const double light[3]);
 /// In frames with light passes: adds the light of sample `at` of a batch, times a weight, to pixel `pixel` of `to`.

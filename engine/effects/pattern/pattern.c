@@ -3,7 +3,6 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
-#include "engine/effects/cut_out/cut_out.h"
 #include "engine/effects/pattern/work.h"
 
 #include <math.h>
@@ -18,8 +17,7 @@ static glint_pattern_sizes sizes_for(const glint_plan *plan)
                                    .samples = plan->together ? (size_t)plan->desc.samples : 1,
                                    // all cached values of a first part may be live until its end
                                    .rows = patterns->row_count + GLINT_PROGRAM_OUTPUTS_MAX,
-                                   .bumps = patterns->bumps,
-                                   .cut_outs = patterns->cut_outs };
+                                   .bumps = patterns->bumps };
 }
 
 struct glint_pattern *glint_pattern_create(const glint_plan *plan)
@@ -30,8 +28,7 @@ struct glint_pattern *glint_pattern_create(const glint_plan *plan)
     const glint_pattern_sizes sizes = sizes_for(plan);
     pattern->sizes = sizes;
     pattern->rows = glint_alloc(sizes.rows * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
-    pattern->cut_out = sizes.cut_outs ? glint_cut_out_create() : NULL;
-    bool good = pattern->rows && (pattern->cut_out || !sizes.cut_outs);
+    bool good = pattern->rows;
     for (int walk = 0; walk < GLINT_WALK_COUNT; walk++) {
         const size_t samples = walk == GLINT_WALK_EYE ? sizes.samples : 1;
         pattern->planes[walk] = glint_alloc(samples * sizes.planes, sizeof *pattern->planes[walk]);
@@ -50,7 +47,7 @@ bool glint_pattern_fits(const struct glint_pattern *pattern, const glint_plan *p
         return !pattern && !plan->patterns;
     const glint_pattern_sizes sizes = sizes_for(plan), has = pattern->sizes;
     return sizes.planes == has.planes && sizes.samples == has.samples && sizes.rows == has.rows &&
-           sizes.bumps == has.bumps && sizes.cut_outs == has.cut_outs;
+           sizes.bumps == has.bumps;
 }
 
 void glint_pattern_destroy(struct glint_pattern *pattern)
@@ -59,10 +56,8 @@ void glint_pattern_destroy(struct glint_pattern *pattern)
         free(pattern->planes[walk]);
         free(pattern->normals[walk]);
     }
-    if (pattern) {
-        glint_cut_out_destroy(pattern->cut_out);
+    if (pattern)
         free(pattern->rows);
-    }
     free(pattern);
 }
 

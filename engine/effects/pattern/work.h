@@ -13,7 +13,7 @@ typedef struct glint_pattern_sizes {
     size_t planes; ///< floats in the planes of a sample
     size_t samples; ///< number of samples shaded together
     size_t rows;
-    bool bumps, cut_outs; ///< whether any surface has bumps or holes
+    bool bumps; ///< whether any surface has bumps
 } glint_pattern_sizes;
 
 struct glint_pattern {
@@ -29,7 +29,6 @@ struct glint_pattern {
     double *rows; ///< scratch of the kernel
     float *planes[GLINT_WALK_COUNT]; ///< the first walk has a set for each sample shaded together
     double *normals[GLINT_WALK_COUNT]; ///< normals of bumped surfaces, before the bump; NULL: no bumps
-    struct glint_cut_out *cut_out; ///< memory of cut_out.c; NULL: no surface has holes
     glint_pattern_sizes sizes;
     glint_pattern_lanes lanes[GLINT_TILE_SAMPLES]; ///< the list made by glint_pattern_find_lanes
     uint32_t first, count; ///< the remaining entries are among lanes[first .. count)
