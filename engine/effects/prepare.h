@@ -14,6 +14,10 @@ void glint_derivative_release(glint_plan *plan);
 glint_key glint_derivative_key(const glint_plan *plan, int pass, glint_key key);
 glint_status glint_environment_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
 void glint_environment_release(glint_plan *plan);
+/// Sets plan->sky to a table of the background, for stages that sample it, unless the plan already has one. There is
+/// none if the background is plain, or so even that its table would not reduce noise.
+glint_status glint_sky_find(glint_plan *plan, glint_error *error);
+void glint_sky_release(const struct glint_sky *sky);
 /// Subtracts the part of the materials' ambient light that indirect light replaces.
 glint_status glint_indirect_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
 /// Replaces a plan's lights by the lights of all times, each weighted by its share.

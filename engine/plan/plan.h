@@ -160,6 +160,7 @@ struct glint_plan {
     uint32_t spared_count; ///< number of rows that cast shadows but need no shadow rays of their own
     double ambient[3], background[3]; ///< ambient light; background colour, 0 if there is an environment
     glint_plan_environment *environment; ///< NULL: the background is plain
+    const struct glint_sky *sky; ///< the background's bright parts, for sampling; NULL: none, or not needed. A reference
     struct {
         bool on;
         uint32_t material; ///< the innermost medium

@@ -20,6 +20,8 @@ void glint_program_release(glint_program *program)
         glint_texture_release(program->textures[i]);
     for (uint32_t i = 0; program->tangents && i < GLINT_PARAMETERS_MAX; i++)
         glint_program_release(program->tangents[i]);
+    for (uint32_t i = 0; i < GLINT_ATTACHED_MAX && program->attached[i]; i++)
+        program->attached[i]->release(program->attached[i]);
     free(program->tangents);
     free(program->textures);
     free((void *)program->code.textures);

@@ -7,6 +7,13 @@
 
 #include <stdatomic.h>
 
+#define GLINT_ATTACHED_MAX 4
+
+/// Data that was computed from a program and lives as long as it. The first member of its structure.
+typedef struct glint_attached {
+    void (*release)(struct glint_attached *attached);
+} glint_attached;
+
 struct glint_program {
     glint_program_kind kind;
     glint_program_code code; ///< the program owns its arrays
@@ -18,6 +25,7 @@ struct glint_program {
     glint_texture **textures; ///< retained
     glint_program **tangents; ///< one for each of GLINT_PARAMETERS_MAX parameters, owned; an entry is NULL if no
         ///< output depends on the parameter. NULL: no number depends on parameters
+    _Atomic(glint_attached *) attached[GLINT_ATTACHED_MAX]; ///< owned; each is set once. NULL: free
     _Atomic uint32_t references;
 };
 

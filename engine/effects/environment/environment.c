@@ -5,6 +5,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
+#include "engine/effects/environment/directions.h"
 #include "engine/effects/pattern/inputs.h"
 #include "engine/effects/prepare.h"
 #include "engine/tile/rays.h"
@@ -20,7 +21,7 @@ struct glint_environment {
     double *rows; ///< scratch of the kernel
 };
 
-static void *create(const glint_plan *plan)
+void *glint_environment_create(const glint_plan *plan)
 {
     struct glint_environment *environment = glint_alloc(1, sizeof *environment);
     if (!environment)
@@ -33,7 +34,7 @@ static void *create(const glint_plan *plan)
     return NULL;
 }
 
-static void destroy(void *memory)
+void glint_environment_destroy(void *memory)
 {
     struct glint_environment *environment = memory;
     if (environment)
@@ -89,8 +90,8 @@ static void load_directions(const glint_tile *tile, glint_precision precision, u
     }
 }
 
-/// Writes the directions of sixteen rays into group `to` of the rows.
-static void put_directions(struct glint_environment *environment, const glint_plan *plan, const double d[3][GLINT_GROUP],
+/// Writes the directions of sixteen rays into group `to` of the rows. pixel: the angle to filter over.
+static void put_directions(struct glint_environment *environment, double pixel, const double d[3][GLINT_GROUP],
                            uint32_t to)
 {
     double length[GLINT_GROUP];
@@ -108,19 +109,52 @@ static void put_directions(struct glint_environment *environment, const glint_pl
         memcpy(row[GLINT_INPUT_V_X + c] + at, n, sizeof *d);
     }
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        row[GLINT_INPUT_FOOTPRINT][at + i] = plan->environment->pixel;
-        row[GLINT_INPUT_UV_FOOTPRINT][at + i] = plan->environment->pixel / TURN;
+        row[GLINT_INPUT_FOOTPRINT][at + i] = pixel;
+        row[GLINT_INPUT_UV_FOOTPRINT][at + i] = pixel / TURN;
     }
 }
 
-static void run(const struct glint_environment *environment, const glint_tile_frame *frame,
-                const glint_program *program, glint_program_args *args)
+static void run(const struct glint_environment *environment, const glint_stages *stages, const glint_program *program,
+                glint_program_args *args)
 {
     args->code = &program->code;
     args->rows = environment->rows;
     for (int input = 0; input < GLINT_INPUT_COUNT; input++)
         args->input[input] = environment->inputs.row[input];
-    frame->stages->program(args);
+    stages->program(args);
+}
+
+/// Runs the program for `count` groups of the rows.
+static void run_rows(struct glint_environment *environment, const glint_plan_environment *own,
+                     const glint_stages *stages, const uint16_t *lanes, uint32_t count)
+{
+    glint_program_args args = { .group_count = count, .wanted = lanes };
+    if (own->uv) {
+        args.result[0] = environment->inputs.row[GLINT_INPUT_UV_U];
+        args.result[1] = environment->inputs.row[GLINT_INPUT_UV_V];
+        run(environment, stages, own->uv, &args);
+        args.result[1] = NULL;
+    }
+    for (uint32_t c = 0; c < own->program->code.output_count; c++)
+        args.result[c] = environment->shown[c];
+    run(environment, stages, own->program, &args);
+}
+
+void glint_environment_evaluate(struct glint_environment *environment, const glint_plan_environment *own,
+                                const glint_stages *stages, double pixel, double (*d)[3][GLINT_GROUP], uint32_t groups,
+                                double *brightness)
+{
+    uint16_t lanes[GLINT_PROGRAM_GROUPS] = { 0 };
+    for (uint32_t g = 0; g < groups; g++) {
+        lanes[g] = UINT16_MAX;
+        put_directions(environment, pixel, (const double(*)[GLINT_GROUP])d[g], g);
+    }
+    run_rows(environment, own, stages, lanes, groups);
+    for (uint32_t i = 0; i < groups * GLINT_GROUP; i++) {
+        brightness[i] = 0;
+        for (uint32_t c = 0; c < own->program->code.output_count; c++)
+            brightness[i] += fmin(fmax(environment->shown[c][i], 0), GLINT_REFLECTANCE_MAX);
+    }
 }
 
 // ---- Results ----
@@ -179,23 +213,6 @@ static void add_group(glint_tile *tile, const struct glint_environment *environm
     }
 }
 
-/// Runs the program for `count` groups of the rows.
-static void run_rows(struct glint_environment *environment, const glint_tile_frame *frame, const uint16_t *lanes,
-                     uint32_t count)
-{
-    const glint_plan_environment *own = frame->plan->environment;
-    glint_program_args args = { .group_count = count, .wanted = lanes };
-    if (own->uv) {
-        args.result[0] = environment->inputs.row[GLINT_INPUT_UV_U];
-        args.result[1] = environment->inputs.row[GLINT_INPUT_UV_V];
-        run(environment, frame, own->uv, &args);
-        args.result[1] = NULL;
-    }
-    for (uint32_t c = 0; c < own->program->code.output_count; c++)
-        args.result[c] = environment->shown[c];
-    run(environment, frame, own->program, &args);
-}
-
 /// Runs the program for groups of a tile and their lanes.
 static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
                        uint32_t count)
@@ -205,9 +222,9 @@ static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const ui
     for (uint32_t k = 0; k < count; k++) {
         double d[3][GLINT_GROUP];
         load_directions(tile, frame->plan->desc.precision, groups[k], d);
-        put_directions(environment, frame->plan, (const double(*)[GLINT_GROUP])d, k);
+        put_directions(environment, frame->plan->environment->pixel, (const double(*)[GLINT_GROUP])d, k);
     }
-    run_rows(environment, frame, lanes, count);
+    run_rows(environment, frame->plan->environment, frame->stages, lanes, count);
     for (uint32_t k = 0; k < count; k++)
         add_group(tile, environment, channels, groups[k], k, lanes[k]);
 }
@@ -257,9 +274,9 @@ static void run_rays(glint_tile *tile, const glint_tile_frame *frame, const glin
         double d[3][GLINT_GROUP];
         lanes[g] = (uint16_t)((1u << here) - 1);
         load_rays(rays, frame->plan->desc.precision, ray + first, here, d);
-        put_directions(environment, frame->plan, (const double(*)[GLINT_GROUP])d, g);
+        put_directions(environment, frame->plan->environment->pixel, (const double(*)[GLINT_GROUP])d, g);
     }
-    run_rows(environment, frame, lanes, groups);
+    run_rows(environment, frame->plan->environment, frame->stages, lanes, groups);
     for (uint32_t g = 0; g < groups; g++) {
         double of[3][GLINT_GROUP];
         light_of(tile, environment, frame->plan->environment->program->code.output_count, g, lanes[g], of);
@@ -310,8 +327,8 @@ const glint_stage glint_stage_environment = {
     .step[GLINT_AT_SIGHT] = need_directions,
     .after_shade = add_background,
     .adds = glint_tile_adds_anywhere,
-    .create = create,
-    .destroy = destroy,
+    .create = glint_environment_create,
+    .destroy = glint_environment_destroy,
     .sized = true,
     .shared = true,
 };

@@ -58,6 +58,7 @@ glint_status glint_environment_prepare(glint_plan *plan, const glint_plan_input 
 void glint_environment_release(glint_plan *plan)
 {
     glint_plan_environment *environment = plan->environment;
+    glint_sky_release(plan->sky);
     if (!environment)
         return;
     glint_program_release(environment->program);

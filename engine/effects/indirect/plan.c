@@ -69,5 +69,6 @@ glint_status glint_indirect_prepare(glint_plan *plan, const glint_plan_input *fr
     indirect->distance = scene->ambient_occlusion_distance;
     for (uint32_t i = 0; i < plan->material_count; i++)
         part_ambient(plan, i, indirect->rest[i]);
-    return find_lights(plan, error);
+    const glint_status status = indirect->is_sky ? GLINT_OK : glint_sky_find(plan, error);
+    return status ? status : find_lights(plan, error);
 }
