@@ -26,10 +26,8 @@ static void push_description(lua_State *L, const void *context)
     lua_newtable(L);
     push_params(L, context);
     lua_setfield(L, -2, "params");
-    lua_pushstring(L, subject->run->script);
-    lua_setfield(L, -2, "script");
-    lua_pushstring(L, subject->options->script);
-    lua_setfield(L, -2, "path");
+    glintL_set_text(L, "script", subject->run->script);
+    glintL_set_text(L, "path", subject->options->script);
 }
 
 // Prints the description. May raise in the script's state.

@@ -86,8 +86,7 @@ static void open_libraries(lua_State *L, const task *work)
     luaL_openlibs(L);
     glintL_attach_run(L, work->run);
     luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
-    lua_pushcfunction(L, luaopen_glint);
-    lua_setfield(L, -2, "glint");
+    glintL_set_function(L, "glint", luaopen_glint);
     lua_settop(L, 0);
     set_arguments(L, work->options);
     set_path(L, work->options);

@@ -179,8 +179,7 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
     lua_getmetatable(L, -1);
     lua_getfield(L, 1, LUA_STRLIBNAME);
     lua_setfield(L, -2, "__index");
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    glintL_set_flag(L, "__metatable", false);
     lua_settop(L, 1);
     lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
     lua_sethook(L, look, LUA_MASKCOUNT, INSTRUCTIONS);

@@ -32,36 +32,12 @@ static void cost_machine(const cost_study *study, char out[256])
 
 // ---- The study as a Lua table: each sets a field of the table on top of the stack ----
 
-static void set_number(lua_State *L, const char *name, double value)
-{
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, name);
-}
-
-static void set_count(lua_State *L, const char *name, uint64_t value)
-{
-    lua_pushinteger(L, (lua_Integer)value);
-    lua_setfield(L, -2, name);
-}
-
-static void set_text(lua_State *L, const char *name, const char *value)
-{
-    lua_pushstring(L, value);
-    lua_setfield(L, -2, name);
-}
-
-static void set_flag(lua_State *L, const char *name, bool value)
-{
-    lua_pushboolean(L, value);
-    lua_setfield(L, -2, name);
-}
-
 static void set_value(lua_State *L, const char *name, cost_value value)
 {
     if (value.text)
-        set_text(L, name, value.text);
+        glintL_set_text(L, name, value.text);
     else
-        set_number(L, name, value.number);
+        glintL_set_number(L, name, value.number);
 }
 
 typedef struct member {
@@ -101,13 +77,13 @@ static void push_members(lua_State *L, const void *from, const member *list, siz
     for (size_t i = 0; i < count; i++) {
         const void *at = (const char *)from + list[i].at;
         if (list[i].kind == 'd')
-            set_number(L, list[i].name, *(const double *)at);
+            glintL_set_number(L, list[i].name, *(const double *)at);
         else if (list[i].kind == 'b')
-            set_flag(L, list[i].name, *(const bool *)at);
+            glintL_set_flag(L, list[i].name, *(const bool *)at);
         else if (list[i].kind == 'f')
-            set_number(L, list[i].name, (double)*(const uint64_t *)at);
+            glintL_set_number(L, list[i].name, (double)*(const uint64_t *)at);
         else
-            set_count(L, list[i].name, *(const uint64_t *)at);
+            glintL_set_whole(L, list[i].name, *(const uint64_t *)at);
     }
 }
 
@@ -118,7 +94,7 @@ static void set_settings(lua_State *L, const cost_study *study, const cost_case 
         if (c->choice[i] < 0)
             continue;
         lua_newtable(L);
-        set_text(L, "knob", cost_knobs[i].name);
+        glintL_set_text(L, "knob", cost_knobs[i].name);
         set_value(L, "value", study->values[i].value[c->choice[i]]);
         lua_rawseti(L, -2, ++count);
     }
@@ -132,22 +108,22 @@ static void set_case(lua_State *L, const cost_study *study, const cost_case *c)
     lua_setfield(L, -2, "time");
     push_members(L, &c->time[COST_TOTAL], TIME, COUNT(TIME));
     lua_setfield(L, -2, "wall");
-    set_number(L, "quartile_range", cost_quartile_range(c));
-    set_number(L, "render", c->time[COST_RENDER].median);
-    set_number(L, "tone", c->time[COST_TONE].median);
-    set_number(L, "encode", c->time[COST_ENCODE].median);
-    set_count(L, "runs", (uint64_t)c->run_count);
-    set_count(L, "frames", c->batch > 0 && !c->is_first_alone ? (uint64_t)c->batch : 1);
-    set_flag(L, "left_out", c->is_left_out);
+    glintL_set_number(L, "quartile_range", cost_quartile_range(c));
+    glintL_set_number(L, "render", c->time[COST_RENDER].median);
+    glintL_set_number(L, "tone", c->time[COST_TONE].median);
+    glintL_set_number(L, "encode", c->time[COST_ENCODE].median);
+    glintL_set_whole(L, "runs", c->run_count);
+    glintL_set_whole(L, "frames", c->batch > 0 && !c->is_first_alone ? c->batch : 1);
+    glintL_set_flag(L, "left_out", c->is_left_out);
     push_members(L, &c->stats.rays, RAYS, COUNT(RAYS));
     lua_setfield(L, -2, "rays");
-    set_count(L, "refined", c->stats.refined);
+    glintL_set_whole(L, "refined", c->stats.refined);
     if (c->is_counted) {
         push_members(L, &c->work, WORK, COUNT(WORK));
         lua_setfield(L, -2, "work");
     }
-    set_count(L, "wrong_object", c->wrong_object);
-    set_count(L, "wrong_shadow", c->wrong_shadow);
+    glintL_set_whole(L, "wrong_object", c->wrong_object);
+    glintL_set_whole(L, "wrong_shadow", c->wrong_shadow);
     set_settings(L, study, c);
     lua_setfield(L, -2, "case");
 }
@@ -159,19 +135,18 @@ static void push_row(lua_State *L, const cost_study *study, const cost_row *row)
     char name[COST_LABEL_SIZE];
     cost_row_name(row, name);
     push_members(L, row, ROW, COUNT(ROW));
-    set_count(L, "index", (uint64_t)(row - study->rows));
-    set_text(L, "name", name);
-    set_text(L, "label", row->label);
+    glintL_set_whole(L, "index", row - study->rows);
+    glintL_set_text(L, "name", name);
+    glintL_set_text(L, "label", row->label);
     if (knob) {
-        set_text(L, "knob", knob->name);
+        glintL_set_text(L, "knob", knob->name);
         set_value(L, "value", study->values[row->knob].value[row->value]);
     } else {
-        set_text(L, "value", row->label);
+        glintL_set_text(L, "value", row->label);
     }
-    set_flag(L, "other_time", knob && knob->is_other_time);
-    set_flag(L, "own", row->measured == 0);
-    lua_pushinteger(L, row->difference);
-    lua_setfield(L, -2, "difference");
+    glintL_set_flag(L, "other_time", knob && knob->is_other_time);
+    glintL_set_flag(L, "own", row->measured == 0);
+    glintL_set_whole(L, "difference", row->difference);
     set_case(L, study, &study->cases[row->measured]);
     if (error) {
         push_members(L, error, ERROR, COUNT(ERROR));
@@ -195,11 +170,11 @@ static void set_reference(lua_State *L, const cost_study *study)
 {
     char truth[COST_LABEL_SIZE];
     cost_truth_name(study, truth);
-    set_text(L, "truth", truth);
+    glintL_set_text(L, "truth", truth);
     if (!study->reference)
         return;
     push_members(L, &study->reference_error, ERROR, COUNT(ERROR));
-    set_number(L, "samples", study->reference_samples);
+    glintL_set_number(L, "samples", study->reference_samples);
     lua_newtable(L);
     for (int i = 0; i < COST_REFERENCE_PARTS; i++) {
         lua_pushnumber(L, study->reference_seed[i]);
@@ -216,16 +191,16 @@ void cost_push_study(lua_State *L, const void *context)
     char machine[256];
     cost_machine(study, machine);
     lua_newtable(L);
-    set_text(L, "script", study->run->script);
-    set_count(L, "frame", (uint64_t)study->run->explain_frame);
-    set_number(L, "width", desc->width);
-    set_number(L, "height", desc->height);
-    set_number(L, "samples", desc->samples);
-    set_count(L, "runs", (uint64_t)study->runs);
-    set_flag(L, "complete", study->is_complete);
-    set_number(L, "seconds", (glintL_now_ms() - study->start_ms) * 1e-3);
-    set_text(L, "machine", machine);
-    set_text(L, "advice", study->advice);
+    glintL_set_text(L, "script", study->run->script);
+    glintL_set_whole(L, "frame", study->run->explain_frame);
+    glintL_set_number(L, "width", desc->width);
+    glintL_set_number(L, "height", desc->height);
+    glintL_set_number(L, "samples", desc->samples);
+    glintL_set_whole(L, "runs", study->runs);
+    glintL_set_flag(L, "complete", study->is_complete);
+    glintL_set_number(L, "seconds", (glintL_now_ms() - study->start_ms) * 1e-3);
+    glintL_set_text(L, "machine", machine);
+    glintL_set_text(L, "advice", study->advice);
     set_reference(L, study);
     set_rows(L, study);
     lua_newtable(L);

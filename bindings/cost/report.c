@@ -63,10 +63,8 @@ static void push_report(lua_State *L, const void *context)
     cost_push_study(L, study);
     set_bytes(L, "page", PAGE, sizeof PAGE);
     set_bytes(L, "style", STYLE, sizeof STYLE);
-    lua_pushstring(L, study->live);
-    lua_setfield(L, -2, "live");
-    lua_pushboolean(L, is_light(study));
-    lua_setfield(L, -2, "is_light");
+    glintL_set_text(L, "live", study->live);
+    glintL_set_flag(L, "is_light", is_light(study));
     lua_newtable(L);
     for (int i = 0, count = 0; i < study->case_count && study->cases[0].picture; i++) {
         const cost_case *c = &study->cases[i];

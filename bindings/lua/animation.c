@@ -268,17 +268,11 @@ void glintL_open_animation(lua_State *L)
         { "__tostring", to_string },
         { NULL, NULL },
     };
-    luaL_newmetatable(L, GLINTL_ANIMATION);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    glintL_new_type(L, GLINTL_ANIMATION, meta);
     glintL_open_kept_image(L);
     list_fields(L, "animation", ANIMATION_FIELDS);
     list_fields(L, "sweep", SWEEP_FIELDS);
     glintL_list_sheet(L);
-    lua_pushcfunction(L, new_animation);
-    lua_setfield(L, -2, "animation");
-    lua_pushcfunction(L, glintL_new_sweep);
-    lua_setfield(L, -2, "sweep");
+    glintL_set_function(L, "animation", new_animation);
+    glintL_set_function(L, "sweep", glintL_new_sweep);
 }

@@ -125,8 +125,7 @@ static glint_chart **keep(lua_State *L, int index)
     glint_chart **chart = lua_newuserdatauv(L, sizeof *chart, 0);
     *chart = NULL;
     lua_createtable(L, 0, 1);
-    lua_pushcfunction(L, release);
-    lua_setfield(L, -2, "__gc");
+    glintL_set_function(L, "__gc", release);
     lua_setmetatable(L, -2);
     lua_rawset(L, -3);
     lua_pop(L, 1);
@@ -213,8 +212,7 @@ static void push_numbers(lua_State *L, const double *of, size_t count, const cha
 static void push_curve(lua_State *L, const glint_curve *curve)
 {
     lua_createtable(L, 0, 6);
-    lua_pushstring(L, curve->label);
-    lua_setfield(L, -2, "label");
+    glintL_set_text(L, "label", curve->label);
     push_numbers(L, curve->x, curve->count, "x");
     push_numbers(L, curve->y, curve->count, "y");
     if (curve->has_color) {
@@ -222,11 +220,9 @@ static void push_curve(lua_State *L, const glint_curve *curve)
         lua_setfield(L, -2, "color");
     }
     if (curve->has_width) {
-        lua_pushnumber(L, curve->width);
-        lua_setfield(L, -2, "width");
+        glintL_set_number(L, "width", curve->width);
     }
-    lua_pushboolean(L, curve->has_dots);
-    lua_setfield(L, -2, "dots");
+    glintL_set_flag(L, "dots", curve->has_dots);
 }
 
 static void push_list(lua_State *L, const void *desc)
@@ -293,8 +289,7 @@ static int save(lua_State *L)
     lua_insert(L, 5);
     lua_pushvalue(L, 2);
     lua_createtable(L, 0, 1);
-    lua_pushnumber(L, read.dpi);
-    lua_setfield(L, -2, "dpi");
+    glintL_set_number(L, "dpi", read.dpi);
     lua_call(L, 3, LUA_MULTRET);
     return lua_gettop(L) - 4;
 }

@@ -83,8 +83,7 @@ void glintL_open_kept_image(lua_State *L)
     };
     luaL_newmetatable(L, KEPT_IMAGE);
     luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    glintL_set_flag(L, "__metatable", false);
     lua_pushliteral(L, GLINTL_IMAGE); // the type's name in messages
     lua_setfield(L, -2, "__name");
     lua_pop(L, 1);

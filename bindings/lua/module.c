@@ -100,23 +100,16 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_newtable(L);
     lua_pushliteral(L, GLINT_VERSION);
     lua_setfield(L, -2, "version");
-    lua_pushcfunction(L, list_fields); // only for the test of meta/glint.lua
-    lua_setfield(L, -2, "_fields");
-    lua_pushcfunction(L, glintL_list_rows); // only for that test, and for bindings/meta/fill.lua
-    lua_setfield(L, -2, "_rows");
-    lua_pushcfunction(L, other_kind);
-    lua_setfield(L, -2, "_other_kind");
-    lua_pushcfunction(L, warn);
-    lua_setfield(L, -2, "_warn");
-    lua_pushcfunction(L, output);
-    lua_setfield(L, -2, "_output");
+    glintL_set_function(L, "_fields", list_fields); // only for the test of meta/glint.lua
+    glintL_set_function(L, "_rows", glintL_list_rows); // only for that test, and for bindings/meta/fill.lua
+    glintL_set_function(L, "_other_kind", other_kind);
+    glintL_set_function(L, "_warn", warn);
+    glintL_set_function(L, "_output", output);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
     lua_createtable(L, 0, 2);
-    lua_pushcfunction(L, refuse_member);
-    lua_setfield(L, -2, "__index");
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    glintL_set_function(L, "__index", refuse_member);
+    glintL_set_flag(L, "__metatable", false);
     lua_setmetatable(L, -2);
     return 1;
 }

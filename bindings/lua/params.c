@@ -182,8 +182,7 @@ static void mark_read(lua_State *L, int params, int name)
     lua_getiuservalue(L, params, 2);
     lua_pushvalue(L, name);
     if (lua_rawget(L, -2) == LUA_TTABLE) {
-        lua_pushboolean(L, true);
-        lua_setfield(L, -2, "is_read");
+        glintL_set_flag(L, "is_read", true);
     }
     lua_pop(L, 2);
 }
@@ -265,11 +264,6 @@ void glintL_open_params(lua_State *L)
         { "__pairs", pairs_of_params },
         { NULL, NULL },
     };
-    luaL_newmetatable(L, GLINTL_PARAMS);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
-    lua_pushcfunction(L, new_params);
-    lua_setfield(L, -2, "params");
+    glintL_new_type(L, GLINTL_PARAMS, meta);
+    glintL_set_function(L, "params", new_params);
 }

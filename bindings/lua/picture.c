@@ -146,14 +146,11 @@ void glintL_open_picture(lua_State *L)
     static const luaL_Reg meta[] = { { "__index", read_member }, { "__newindex", write_member }, { NULL, NULL } };
     static const glintL_variant variant = { .name = "picture", .fields = FIELDS };
     luaL_newmetatable(L, PICTURE ".held");
-    lua_pushcfunction(L, close_held);
-    lua_setfield(L, -2, "__gc");
+    glintL_set_function(L, "__gc", close_held);
     luaL_newmetatable(L, PICTURE);
     luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    glintL_set_flag(L, "__metatable", false);
     lua_pop(L, 2);
     glintL_list_variant(L, &variant, METHODS);
-    lua_pushcfunction(L, read_image);
-    lua_setfield(L, -2, "read_image");
+    glintL_set_function(L, "read_image", read_image);
 }

@@ -253,15 +253,13 @@ static int cast(lua_State *L)
     lua_createtable(L, 0, 5);
     lua_insert(L, -2);
     lua_setfield(L, -2, "object");
-    lua_pushnumber(L, hit.t);
-    lua_setfield(L, -2, "t");
+    glintL_set_number(L, "t", hit.t);
     glintL_push_vector(L, hit.point);
     lua_setfield(L, -2, "point");
     glintL_push_vector(L, hit.normal);
     lua_setfield(L, -2, "normal");
     if (numbered) {
-        lua_pushinteger(L, (lua_Integer)hit.element + 1);
-        lua_setfield(L, -2, "element");
+        glintL_set_whole(L, "element", (lua_Integer)hit.element + 1);
     }
     return 1;
 }
@@ -357,8 +355,7 @@ static int new_ambient_occlusion(lua_State *L)
     glintL_check_status(L, "", &error, glint_scene_set(scene, &desc, &error));
     glintL_push_field(L, field, &desc);
     lua_getmetatable(L, -1);
-    lua_pushboolean(L, true);
-    lua_setfield(L, -2, "glint.ambient_occlusion");
+    glintL_set_flag(L, "glint.ambient_occlusion", true);
     lua_pop(L, 1);
     return 1;
 }
@@ -368,11 +365,8 @@ void glintL_open_scene(lua_State *L)
     glintL_open_class(L, &CLASS);
     glintL_list_object(L, &SCENE, &CLASS);
     luaL_getmetatable(L, GLINTL_SCENE);
-    lua_pushcfunction(L, count_objects);
-    lua_setfield(L, -2, "__len");
+    glintL_set_function(L, "__len", count_objects);
     lua_pop(L, 1);
-    lua_pushcfunction(L, new_scene);
-    lua_setfield(L, -2, "scene");
-    lua_pushcfunction(L, new_ambient_occlusion);
-    lua_setfield(L, -2, "ambient_occlusion");
+    glintL_set_function(L, "scene", new_scene);
+    glintL_set_function(L, "ambient_occlusion", new_ambient_occlusion);
 }

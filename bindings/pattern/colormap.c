@@ -216,9 +216,7 @@ static int new_colormap(lua_State *L)
 void glintL_open_colormap(lua_State *L)
 {
     luaL_newmetatable(L, COLORMAP);
-    lua_pushcfunction(L, close_texture);
-    lua_setfield(L, -2, "__gc");
+    glintL_set_function(L, "__gc", close_texture);
     lua_pop(L, 1);
-    lua_pushcfunction(L, new_colormap);
-    lua_setfield(L, -2, "colormap");
+    glintL_set_function(L, "colormap", new_colormap);
 }

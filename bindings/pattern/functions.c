@@ -165,11 +165,7 @@ static void open_type(lua_State *L, const char *type)
         { "__call", call },         { "__tostring", to_string },    { NULL, NULL },
     };
     const glintL_variant variant = { .name = type + sizeof "glint." - 1 };
-    luaL_newmetatable(L, type);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    glintL_new_type(L, type, meta);
     glintL_list_variant(L, &variant, METHODS);
 }
 

@@ -108,11 +108,7 @@ void glintL_open_input(lua_State *L)
     const glintL_variant variant = { .name = "surroundings", .fields = fields };
     for (size_t i = 0; i < FIELD_COUNT; i++)
         fields[i].name = FIELDS[i].name;
-    luaL_newmetatable(L, GLINTL_SURROUNDINGS);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    glintL_new_type(L, GLINTL_SURROUNDINGS, meta);
     glintL_list_variant(L, &variant, NULL);
 }
 

@@ -21,18 +21,11 @@ static void note_patterned(lua_State *L, int index)
 {
     if (!luaL_testudata(L, index, GLINTL_MATERIAL))
         return; // scenes are found without a list
-    glintL_push_table(L, &PATTERNED);
-    if (!lua_getmetatable(L, -1)) {
-        lua_createtable(L, 0, 1);
-        lua_pushliteral(L, "k");
-        lua_setfield(L, -2, "__mode");
-        lua_pushvalue(L, -1);
-        lua_setmetatable(L, -3);
-    }
+    glintL_push_weak_table(L, &PATTERNED, "k");
     lua_pushvalue(L, index);
     lua_pushboolean(L, true);
-    lua_rawset(L, -4);
-    lua_pop(L, 2);
+    lua_rawset(L, -3);
+    lua_pop(L, 1);
 }
 
 void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value)

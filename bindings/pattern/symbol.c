@@ -154,8 +154,7 @@ void glintL_set_operators(lua_State *L)
     };
     glintL_set_arithmetic(L);
     luaL_setfuncs(L, refused, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    glintL_set_flag(L, "__metatable", false);
 }
 
 static int refuse_equal(lua_State *L)

@@ -51,16 +51,13 @@ static void read_file(lua_State *L, char out[4096])
 static void keep_fields(lua_State *L, const arguments *a, const glint_texture *texture)
 {
     lua_createtable(L, 0, 6);
-    lua_pushstring(L, a->file);
-    lua_setfield(L, -2, "file");
+    glintL_set_text(L, "file", a->file);
     for (const glintL_field *f = FIELDS + 1; f->name; f++) {
         glintL_push_field(L, f, a);
         lua_setfield(L, -2, f->name);
     }
-    lua_pushinteger(L, glint_texture_width(texture));
-    lua_setfield(L, -2, "width");
-    lua_pushinteger(L, glint_texture_height(texture));
-    lua_setfield(L, -2, "height");
+    glintL_set_whole(L, "width", glint_texture_width(texture));
+    glintL_set_whole(L, "height", glint_texture_height(texture));
     lua_setiuservalue(L, -2, 1);
 }
 
@@ -193,12 +190,7 @@ void glintL_open_texture(lua_State *L)
     const size_t own = sizeof FIELDS / sizeof *FIELDS - 1;
     memcpy(fields, FIELDS, own * sizeof *fields);
     memcpy(fields + own, SIZES, sizeof SIZES);
-    luaL_newmetatable(L, GLINTL_TEXTURE);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    glintL_new_type(L, GLINTL_TEXTURE, meta);
     glintL_list_variant(L, &variant, methods);
-    lua_pushcfunction(L, new_texture);
-    lua_setfield(L, -2, "texture");
+    glintL_set_function(L, "texture", new_texture);
 }

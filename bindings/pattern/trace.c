@@ -446,10 +446,8 @@ const char *glintL_push_pattern_position(lua_State *L, int index)
 void glintL_open_trace(lua_State *L)
 {
     luaL_newmetatable(L, TRACED);
-    lua_pushcfunction(L, close_traced);
-    lua_setfield(L, -2, "__gc");
+    glintL_set_function(L, "__gc", close_traced);
     luaL_newmetatable(L, SESSION);
-    lua_pushcfunction(L, close_session);
-    lua_setfield(L, -2, "__gc");
+    glintL_set_function(L, "__gc", close_session);
     lua_pop(L, 2);
 }

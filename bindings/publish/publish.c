@@ -189,12 +189,6 @@ static void set_text(lua_State *L, const char *name, const void *bytes, size_t s
     lua_setfield(L, -2, name);
 }
 
-static void set_number(lua_State *L, const char *name, lua_Integer value)
-{
-    lua_pushinteger(L, value);
-    lua_setfield(L, -2, name);
-}
-
 // Pushes the bytes of a file. May raise.
 static void push_file(lua_State *L, const char *path)
 {
@@ -212,23 +206,19 @@ static void push_page(lua_State *L, const void *context)
     lua_newtable(L);
     glintL_copy_value(p->script.state, -1, L);
     lua_setfield(L, -2, "params");
-    lua_pushstring(L, p->run->script);
-    lua_setfield(L, -2, "script");
+    glintL_set_text(L, "script", p->run->script);
     lua_pushlstring(L, p->options->script, (size_t)(cli_base_name(p->options->script) - p->options->script));
     lua_setfield(L, -2, "folder");
     push_file(L, p->options->script);
     lua_setfield(L, -2, "source");
-    lua_pushstring(L, p->options->title ? p->options->title : p->run->script);
-    lua_setfield(L, -2, "title");
-    lua_pushstring(L, p->options->controls);
-    lua_setfield(L, -2, "controls");
-    lua_pushboolean(L, p->options->shows_source);
-    lua_setfield(L, -2, "shows_source");
+    glintL_set_text(L, "title", p->options->title ? p->options->title : p->run->script);
+    glintL_set_text(L, "controls", p->options->controls);
+    glintL_set_flag(L, "shows_source", p->options->shows_source);
     lua_pushliteral(L, GLINT_VERSION);
     lua_setfield(L, -2, "version");
-    set_number(L, "width", glint_image_width(p->image));
-    set_number(L, "height", glint_image_height(p->image));
-    set_number(L, "frame", p->frame);
+    glintL_set_whole(L, "width", glint_image_width(p->image));
+    glintL_set_whole(L, "height", glint_image_height(p->image));
+    glintL_set_whole(L, "frame", p->frame);
     set_text(L, "template", PAGE_HTML, sizeof PAGE_HTML);
     set_text(L, "poster", p->poster, p->poster_size);
     set_text(L, "wasm", p->wasm, p->wasm_size);

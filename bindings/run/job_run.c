@@ -119,12 +119,9 @@ static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_request
 static int push_summary(lua_State *L, const glintL_run *run, double start_ms)
 {
     lua_createtable(L, 0, 3);
-    lua_pushinteger(L, run->done);
-    lua_setfield(L, -2, "frames");
-    lua_pushinteger(L, run->kept);
-    lua_setfield(L, -2, "kept");
-    lua_pushnumber(L, (glintL_now_ms() - start_ms) * 1e-3);
-    lua_setfield(L, -2, "seconds");
+    glintL_set_whole(L, "frames", run->done);
+    glintL_set_whole(L, "kept", run->kept);
+    glintL_set_number(L, "seconds", (glintL_now_ms() - start_ms) * 1e-3);
     return 1;
 }
 

@@ -33,8 +33,7 @@ bool glintL_push_chart_scene(lua_State *L, int index)
     lua_createtable(L, 1, 1);
     lua_pushvalue(L, index);
     lua_rawseti(L, -2, 1);
-    lua_pushinteger(L, 1);
-    lua_setfield(L, -2, "background");
+    glintL_set_whole(L, "background", 1);
     lua_call(L, 1, 1);
     lua_replace(L, -3);
     lua_pop(L, 1);

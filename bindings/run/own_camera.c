@@ -33,8 +33,7 @@ static void set_camera(lua_State *L, int index, const double eye[3], const doubl
     lua_createtable(L, 0, 3);
     push_vector_field(L, "eye", eye);
     push_vector_field(L, "at", at);
-    lua_pushnumber(L, FOV);
-    lua_setfield(L, -2, "fov");
+    glintL_set_number(L, "fov", FOV);
     lua_call(L, 1, 1);
     lua_setfield(L, index, "camera");
     lua_pop(L, 2);

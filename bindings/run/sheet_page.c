@@ -26,8 +26,7 @@ static void push_axis(lua_State *L, const glintL_sheet *sheet, const glintL_axis
     char spelt[GLINTL_AXIS_SIZE];
     glintL_axis_title(sheet, axis, spelt);
     lua_createtable(L, 0, 2);
-    lua_pushstring(L, spelt);
-    lua_setfield(L, -2, "name");
+    glintL_set_text(L, "name", spelt);
     lua_newtable(L);
     for (size_t i = 0; i < axis->count; i++) {
         glintL_axis_spell(sheet, axis, i, spelt);
@@ -44,16 +43,11 @@ static void push_content(lua_State *L, const void *context)
     lua_newtable(L);
     lua_pushlstring(L, PAGE, sizeof PAGE);
     lua_setfield(L, -2, "page");
-    lua_pushstring(L, GLINT_VERSION);
-    lua_setfield(L, -2, "version");
-    lua_pushstring(L, sheet->title);
-    lua_setfield(L, -2, "title");
-    lua_pushstring(L, sheet->live);
-    lua_setfield(L, -2, "live");
-    lua_pushinteger(L, sheet->difference);
-    lua_setfield(L, -2, "difference");
-    lua_pushnumber(L, sheet->gain > 0 ? sheet->gain : 8);
-    lua_setfield(L, -2, "gain");
+    glintL_set_text(L, "version", GLINT_VERSION);
+    glintL_set_text(L, "title", sheet->title);
+    glintL_set_text(L, "live", sheet->live);
+    glintL_set_whole(L, "difference", sheet->difference);
+    glintL_set_number(L, "gain", sheet->gain > 0 ? sheet->gain : 8);
     if (page_content->axes->is_grid) {
         lua_newtable(L);
         for (size_t a = 0; a < page_content->axes->count; a++) {

@@ -32,8 +32,7 @@ glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect)
     *box = NULL;
     if (collect) {
         lua_createtable(L, 0, 1);
-        lua_pushcfunction(L, collect);
-        lua_setfield(L, -2, "__gc");
+        glintL_set_function(L, "__gc", collect);
         lua_setmetatable(L, -2);
     }
     lua_rawsetp(L, LUA_REGISTRYINDEX, &RUN);

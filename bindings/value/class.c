@@ -263,6 +263,44 @@ static int to_string(lua_State *L)
     return 1;
 }
 
+void glintL_set_text(lua_State *L, const char *name, const char *value)
+{
+    lua_pushstring(L, value);
+    lua_setfield(L, -2, name);
+}
+
+void glintL_set_number(lua_State *L, const char *name, double value)
+{
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, name);
+}
+
+void glintL_set_whole(lua_State *L, const char *name, lua_Integer value)
+{
+    lua_pushinteger(L, value);
+    lua_setfield(L, -2, name);
+}
+
+void glintL_set_flag(lua_State *L, const char *name, bool value)
+{
+    lua_pushboolean(L, value);
+    lua_setfield(L, -2, name);
+}
+
+void glintL_set_function(lua_State *L, const char *name, lua_CFunction value)
+{
+    lua_pushcfunction(L, value);
+    lua_setfield(L, -2, name);
+}
+
+void glintL_new_type(lua_State *L, const char *type, const luaL_Reg *functions)
+{
+    luaL_newmetatable(L, type);
+    luaL_setfuncs(L, functions, 0);
+    glintL_set_flag(L, "__metatable", false);
+    lua_pop(L, 1);
+}
+
 void glintL_open_class(lua_State *L, const glintL_class *class)
 {
     static const luaL_Reg meta[] = {
@@ -275,8 +313,7 @@ void glintL_open_class(lua_State *L, const glintL_class *class)
     luaL_newmetatable(L, class->type);
     lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_setfield(L, -2, "class");
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    glintL_set_flag(L, "__metatable", false);
     lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_pushboolean(L, true);
     lua_pushcclosure(L, close_object, 2);

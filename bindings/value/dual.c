@@ -139,74 +139,34 @@ static int push_result(lua_State *L, glintL_dual d)
     return 1;
 }
 
-static int add(lua_State *L)
+// Computes a operator b. Upvalues: the metamethod's name and Lua's code of the operator.
+static int compute(lua_State *L)
 {
     glintL_dual a, b;
-    if (defer(L, "__add"))
+    if (defer(L, lua_tostring(L, lua_upvalueindex(1))))
         return 1;
     read_operands(L, &a, &b);
-    return push_result(L, glintL_dual_apply(&a, 1, &b, 1, a.value + b.value));
-}
-
-static int subtract(lua_State *L)
-{
-    glintL_dual a, b;
-    if (defer(L, "__sub"))
+    const double x = a.value, y = b.value, quotient = x / y;
+    switch (lua_tointeger(L, lua_upvalueindex(2))) {
+    case LUA_OPADD:
+        return push_result(L, glintL_dual_apply(&a, 1, &b, 1, x + y));
+    case LUA_OPSUB:
+        return push_result(L, glintL_dual_apply(&a, 1, &b, -1, x - y));
+    case LUA_OPMUL:
+        return push_result(L, glintL_dual_apply(&a, y, &b, x, x * y));
+    case LUA_OPDIV:
+        return push_result(L, glintL_dual_apply(&a, 1 / y, &b, -quotient / y, quotient));
+    case LUA_OPMOD:
+        lua_pushnumber(L, x);
+        lua_pushnumber(L, y);
+        lua_arith(L, LUA_OPMOD);
+        return push_result(L, glintL_dual_apply(&a, 1, &b, -floor(quotient), lua_tonumber(L, -1)));
+    case LUA_OPIDIV:
+        lua_pushnumber(L, floor(quotient));
         return 1;
-    read_operands(L, &a, &b);
-    return push_result(L, glintL_dual_apply(&a, 1, &b, -1, a.value - b.value));
-}
-
-static int multiply(lua_State *L)
-{
-    glintL_dual a, b;
-    if (defer(L, "__mul"))
-        return 1;
-    read_operands(L, &a, &b);
-    return push_result(L, glintL_dual_apply(&a, b.value, &b, a.value, a.value * b.value));
-}
-
-static int divide(lua_State *L)
-{
-    glintL_dual a, b;
-    if (defer(L, "__div"))
-        return 1;
-    read_operands(L, &a, &b);
-    const double q = a.value / b.value;
-    return push_result(L, glintL_dual_apply(&a, 1 / b.value, &b, -q / b.value, q));
-}
-
-// Computes a % b as Lua does: a - floor(a / b) b.
-static int modulo(lua_State *L)
-{
-    glintL_dual a, b;
-    if (defer(L, "__mod"))
-        return 1;
-    read_operands(L, &a, &b);
-    lua_pushnumber(L, a.value);
-    lua_pushnumber(L, b.value);
-    lua_arith(L, LUA_OPMOD);
-    const double rest = lua_tonumber(L, -1);
-    return push_result(L, glintL_dual_apply(&a, 1, &b, -floor(a.value / b.value), rest));
-}
-
-static int divide_whole(lua_State *L)
-{
-    glintL_dual a, b;
-    if (defer(L, "__idiv"))
-        return 1;
-    read_operands(L, &a, &b);
-    lua_pushnumber(L, floor(a.value / b.value));
-    return 1;
-}
-
-static int raise(lua_State *L)
-{
-    glintL_dual a, b;
-    if (defer(L, "__pow"))
-        return 1;
-    read_operands(L, &a, &b);
-    return push_result(L, glintL_dual_pow(&a, &b));
+    default:
+        return push_result(L, glintL_dual_pow(&a, &b));
+    }
 }
 
 static int negate(lua_State *L)
@@ -215,27 +175,14 @@ static int negate(lua_State *L)
     return push_result(L, glintL_dual_apply(a, -1, NULL, 0, -a->value));
 }
 
-static int equal(lua_State *L)
+// Compares the values. Upvalues: as for compute.
+static int compare(lua_State *L)
 {
     glintL_dual a, b;
     read_operands(L, &a, &b);
-    lua_pushboolean(L, a.value == b.value);
-    return 1;
-}
-
-static int less(lua_State *L)
-{
-    glintL_dual a, b;
-    read_operands(L, &a, &b);
-    lua_pushboolean(L, a.value < b.value);
-    return 1;
-}
-
-static int less_equal(lua_State *L)
-{
-    glintL_dual a, b;
-    read_operands(L, &a, &b);
-    lua_pushboolean(L, a.value <= b.value);
+    lua_pushnumber(L, a.value);
+    lua_pushnumber(L, b.value);
+    lua_pushboolean(L, lua_compare(L, -2, -1, (int)lua_tointeger(L, lua_upvalueindex(2))));
     return 1;
 }
 
@@ -257,16 +204,27 @@ static int concatenate(lua_State *L)
 
 void glintL_open_dual(lua_State *L)
 {
-    static const luaL_Reg meta[] = {
-        { "__add", add },       { "__sub", subtract },      { "__mul", multiply },         { "__div", divide },
-        { "__mod", modulo },    { "__idiv", divide_whole }, { "__pow", raise },            { "__unm", negate },
-        { "__eq", equal },      { "__lt", less },           { "__le", less_equal },        { "__tostring", to_string },
-        { "__concat", concatenate }, { NULL, NULL },
+    static const struct {
+        const char *event;
+        int code;
+        lua_CFunction function;
+    } operators[] = {
+        { "__add", LUA_OPADD, compute }, { "__sub", LUA_OPSUB, compute }, { "__mul", LUA_OPMUL, compute },
+        { "__div", LUA_OPDIV, compute }, { "__mod", LUA_OPMOD, compute }, { "__idiv", LUA_OPIDIV, compute },
+        { "__pow", LUA_OPPOW, compute }, { "__eq", LUA_OPEQ, compare },   { "__lt", LUA_OPLT, compare },
+        { "__le", LUA_OPLE, compare },
     };
-    luaL_newmetatable(L, GLINTL_DUAL);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
+    static const luaL_Reg meta[] = {
+        { "__unm", negate }, { "__tostring", to_string }, { "__concat", concatenate }, { NULL, NULL },
+    };
+    glintL_new_type(L, GLINTL_DUAL, meta);
+    luaL_getmetatable(L, GLINTL_DUAL);
+    for (size_t i = 0; i < sizeof operators / sizeof *operators; i++) {
+        lua_pushstring(L, operators[i].event);
+        lua_pushinteger(L, operators[i].code);
+        lua_pushcclosure(L, operators[i].function, 2);
+        lua_setfield(L, -2, operators[i].event);
+    }
     lua_pop(L, 1);
 }
 

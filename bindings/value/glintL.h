@@ -326,6 +326,14 @@ void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 
 // ---- class.c: fields and metatables of boxes ----
 
+/// Each sets a field of the table on top of the stack. `value` of a text may be NULL: nil.
+void glintL_set_text(lua_State *L, const char *name, const char *value);
+void glintL_set_number(lua_State *L, const char *name, double value);
+void glintL_set_whole(lua_State *L, const char *name, lua_Integer value);
+void glintL_set_flag(lua_State *L, const char *name, bool value);
+void glintL_set_function(lua_State *L, const char *name, lua_CFunction value);
+/// Makes the metatable of a type, which scripts cannot read.
+void glintL_new_type(lua_State *L, const char *type, const luaL_Reg *functions);
 /// Makes the metatable of a class.
 void glintL_open_class(lua_State *L, const glintL_class *type);
 /// Makes the metatable of a class, and adds the constructors of its variants to the table on top of the stack.

@@ -3,12 +3,6 @@
 
 #include "bindings/value/glintL.h"
 
-static void set_text(lua_State *L, const char *key, const char *text)
-{
-    lua_pushstring(L, text);
-    lua_setfield(L, -2, key);
-}
-
 static void push_default(lua_State *L, const glintL_field *field)
 {
     glintL_field plain = *field;
@@ -58,14 +52,12 @@ static void push_row(lua_State *L, const glintL_field *field)
     lua_createtable(L, 0, 9);
     lua_insert(L, -2);
     lua_setfield(L, -2, "type");
-    set_text(L, "name", field->name);
-    set_text(L, "doc", field->doc);
-    set_text(L, "unit", field->unit);
-    set_text(L, "follows", field->follows);
-    lua_pushboolean(L, field->required);
-    lua_setfield(L, -2, "required");
-    lua_pushboolean(L, (field->takes & GLINT_TAKES_VARIABLE) != 0);
-    lua_setfield(L, -2, "takes_variable");
+    glintL_set_text(L, "name", field->name);
+    glintL_set_text(L, "doc", field->doc);
+    glintL_set_text(L, "unit", field->unit);
+    glintL_set_text(L, "follows", field->follows);
+    glintL_set_flag(L, "required", field->required);
+    glintL_set_flag(L, "takes_variable", (field->takes & GLINT_TAKES_VARIABLE) != 0);
     push_default(L, field);
     lua_setfield(L, -2, "default");
     if (field->type == GLINT_TYPE_TABLE)

@@ -169,10 +169,6 @@ void glintL_open_transform(lua_State *L)
     static const luaL_Reg constructors[] = {
         { "translate", translate }, { "scale", scale }, { "rotate", rotate }, { "matrix", matrix }, { NULL, NULL },
     };
-    luaL_newmetatable(L, TRANSFORM);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    glintL_new_type(L, TRANSFORM, meta);
     luaL_setfuncs(L, constructors, 0);
 }

@@ -119,10 +119,6 @@ void glintL_open_vector(lua_State *L)
         { .name = NULL },
     };
     static const glintL_variant variant = { .name = "vector", .fields = fields };
-    luaL_newmetatable(L, GLINTL_VECTOR_TYPE);
-    luaL_setfuncs(L, meta, 0);
-    lua_pushboolean(L, false);
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    glintL_new_type(L, GLINTL_VECTOR_TYPE, meta);
     glintL_list_variant(L, &variant, glintL_get_tracing(L)->methods);
 }
