@@ -198,6 +198,7 @@ typedef struct cost_case {
     bool is_counted; ///< `work` is known
     bool has_error;
     glint_picture_error film, file; ///< errors of the linear light, and of the values in the file
+    double estimate; ///< what --until takes for film.rmse; 0: not estimated
     uint64_t wrong_object, wrong_shadow; ///< pixels
     uint8_t *picture, *difference; ///< PNG, owned, for the report; NULL: none
     size_t picture_size, difference_size;

@@ -232,12 +232,42 @@ static glint_status keep_pictures(cost_study *study, cost_case *c, const glint_i
     return status;
 }
 
+// Returns whether only the samples differ from the base.
+static bool is_of_samples(const cost_case *c)
+{
+    const int samples = cost_knob_find("samples", strlen("samples"));
+    for (int i = 0; i < cost_knob_count; i++)
+        if (i != samples && c->choice[i] >= 0)
+            return false;
+    return true;
+}
+
+// Estimates the error of a picture without the reference, as --until does, for cases that differ in their samples.
+static glint_status estimate(cost_study *study, cost_case *c, const glint_image *image, glint_error *error)
+{
+    const int knob = cost_knob_find("samples", strlen("samples"));
+    glint_render_desc desc = study->own->desc;
+    glint_image *partner = NULL;
+    if (c->choice[knob] >= 0)
+        desc.samples = study->values[knob].value[c->choice[knob]].number;
+    if (desc.samples < 2 || !is_of_samples(c))
+        return GLINT_OK;
+    const cost_shot how = { .passes = 1u << GLINT_PASS_BEAUTY, .samples = desc.samples, .seed = glint_partner_seed(&desc) };
+    glint_status status = cost_take(study, c, &how, &partner, NULL, error);
+    if (!status)
+        status = glint_estimate_error(image, partner, &c->estimate, error);
+    glint_image_release(partner);
+    return status;
+}
+
 // Measures errors against the reference.
 static glint_status find_errors(cost_study *study, cost_case *c, const glint_image *image, glint_error *error)
 {
     glint_status status = glint_reference_measure(study->reference, image, 0, &c->film, error);
     if (!status && c->needs_file)
         status = glint_reference_measure(study->reference, image, c->bits, &c->file, error);
+    if (!status)
+        status = estimate(study, c, image, error);
     if (!status)
         status = count_decisions(study, c, error);
     if (!status && study->options->report)

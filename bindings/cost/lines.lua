@@ -9,6 +9,21 @@ function the.seeds_of(reference)
   return table.concat(out, ", ", 1, #out - 1) .. " and " .. out[#out]
 end
 
+-- Returns a sentence about the errors that --until and glint watch would state; "" if there is no such row.
+function the.estimates_of(study)
+  local out, worst = {}, 1
+  for _, row in ipairs(study.rows) do
+    local stated, error = row.case.estimate, row.error
+    if row.knob == "samples" and stated and error and error.rmse > 0 then
+      out[#out + 1] = format("%.2g for %.2g at %.0f samples", stated, error.rmse, row.value)
+      worst = math.max(worst, stated / error.rmse, error.rmse / stated)
+    end
+  end
+  if #out == 0 then return "" end
+  return "Without a reference, --until and glint watch estimate an RMSE of " .. table.concat(out, ", ")
+    .. format("; they are off by a factor of %.3g at most.", worst)
+end
+
 -- ---- For people ----
 
 local function head_of(study)
@@ -68,6 +83,8 @@ function the.table(study)
     .. "the largest error, in 8-bit steps. >1, >8: the\nfraction of pixels with a larger error. object, shadow: the "
     .. "number of pixels with a wrong object or a wrong shadow.\n", study.runs)
   out[#out + 1] = rows_together(study)
+  local estimates = the.estimates_of(study)
+  if estimates ~= "" then out[#out + 1] = estimates .. "\n" end
   if #study.left_out > 0 then out[#out + 1] = "left out:\n" end
   for _, line in ipairs(study.left_out) do out[#out + 1] = "  " .. line .. "\n" end
   return table.concat(out) .. "\n" .. study.advice .. "\n"
@@ -105,7 +122,7 @@ local function row_for_programs(row)
   return '{"knob":' .. json(row.knob or "combination") .. ',"value":' .. json(row.value)
     .. quartiles_for_programs("ms", case.wall) .. quartiles_for_programs("cpu", case.time)
     .. format(',"x_fastest":%.4f,', row.x_fastest)
-    .. members(e, "rmse", "relmse", "max_code", "over1", "over8", "flip") .. ","
+    .. members(e, "rmse", "relmse", "max_code", "over1", "over8", "flip") .. "," .. members(case, "estimate") .. ","
     .. members(wrong, "wrong_object", "wrong_shadow") .. ',"counters":{' .. counters_of(case) .. '},'
     .. format('"pareto":%s,"default":%s,"resolved":%s,"difference":"%s",', row.front, row.default, row.resolved,
       ({ "faster", "no difference", "slower" })[row.difference + 2])

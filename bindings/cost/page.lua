@@ -85,8 +85,8 @@ local function reference_of(study)
   if not reference then return "No reference was rendered, so no error is known." end
   return format("Errors are against the mean of %d pictures of %.0f samples a pixel, decided in double "
     .. "precision, with seeds %s%s. Their difference shows that this mean itself has an error of about %.2g RMSE; "
-    .. "errors below ten times that value are marked as not resolved.", #reference.seeds, reference.samples,
-    the.seeds_of(reference), study.truth, reference.rmse)
+    .. "errors below ten times that value are marked as not resolved. ", #reference.seeds, reference.samples,
+    the.seeds_of(reference), study.truth, reference.rmse) .. the.estimates_of(study)
 end
 
 local function left_out_of(study)

@@ -118,6 +118,8 @@ static void set_case(lua_State *L, const cost_study *study, const cost_case *c)
     push_members(L, &c->stats.rays, RAYS, COUNT(RAYS));
     lua_setfield(L, -2, "rays");
     glintL_set_whole(L, "refined", c->stats.refined);
+    if (c->estimate > 0)
+        glintL_set_number(L, "estimate", c->estimate);
     if (c->is_counted) {
         push_members(L, &c->work, WORK, COUNT(WORK));
         lua_setfield(L, -2, "work");

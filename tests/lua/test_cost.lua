@@ -264,6 +264,20 @@ check(near(own.relmse, relative / #mine), "relMSE %g, by hand %g", own.relmse, r
 check(near(advice.reference.rmse, (apart / #mine) ^ 0.5), "the reference's own error %g, by hand %g",
   advice.reference.rmse, (apart / #mine) ^ 0.5)
 
+-- The estimate of each row of samples is that of --until, and near the error; other rows have none.
+for _, row in ipairs(rows) do
+  if row.knob == "samples" and row.value > 1 then
+    assert(os.execute(("%s %s -f 2 -q --json --until 1e-9 --samples %d --warnings none -o none >%s/out"):format(glint, film,
+      row.value, work)))
+    local stated = tonumber(read("out"):match '"error":([%d.e-]+)')
+    check(near(row.estimate, stated), "%d samples: estimate %g, --until says %g", row.value, row.estimate, stated)
+    check(row.estimate < 1.3 * row.rmse and row.rmse < 1.3 * row.estimate, "%d samples: RMSE %g, estimate %g", row.value,
+      row.rmse, row.estimate)
+  else
+    check(row.estimate == null or row.default or row.rmse == own.rmse, "%s %s: no estimate", row.knob, row.value)
+  end
+end
+
 -- ---- Only effects that the scene needs ----
 
 local matt = [[glint.sphere { center = { 0, 1, 0 }, radius = 1 }, ]]
