@@ -17,28 +17,15 @@ static verdict judge(glint_status status, const glint_compare_result *result)
     return result->failed ? DIFFER : result->warned ? WARN : SAME;
 }
 
-static void print_number(FILE *out, const char *name, double value)
-{
-    fprintf(out, ",\"%s\":", name);
-    glintL_json_number(out, value);
-}
-
 static void print_json(FILE *out, char **files, verdict found, const glint_compare_result *result, const char *message)
 {
-    fputs("{\"event\":\"compare\",\"a\":", out);
-    glintL_json_string(out, files[0]);
-    fputs(",\"b\":", out);
-    glintL_json_string(out, files[1]);
-    fprintf(out, ",\"result\":\"%s\"", VERDICTS[found]);
+    glintL_json(out, "{\"event\":\"compare\",\"a\":%s,\"b\":%s,\"result\":%s", files[0], files[1], VERDICTS[found]);
     if (found >= SIZE) {
-        fputs(",\"message\":", out);
-        glintL_json_string(out, message);
+        glintL_json(out, ",\"message\":%s", message);
     } else {
         fprintf(out, ",\"width\":%d,\"height\":%d,\"channels\":%d", result->width, result->height, result->channels);
-        print_number(out, "mean_error", result->mean_error);
-        print_number(out, "rms_error", result->rms_error);
-        print_number(out, "peak_snr", result->peak_snr);
-        print_number(out, "max_error", result->max_error);
+        glintL_json(out, ",\"mean_error\":%g,\"rms_error\":%g,\"peak_snr\":%g,\"max_error\":%g", result->mean_error,
+                    result->rms_error, result->peak_snr, result->max_error);
         fprintf(out, ",\"max_at\":{\"x\":%d,\"y\":%d,\"channel\":%d}", result->max_x, result->max_y,
                 result->max_channel);
         fprintf(out, ",\"failed\":%" PRIu64 ",\"warned\":%" PRIu64 ",\"pixels\":%" PRIu64, result->failed,

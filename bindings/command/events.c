@@ -54,14 +54,6 @@ void cli_print_rays(FILE *out, const glint_ray_counts *rays)
             rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
 }
 
-static void print_file(FILE *out, const char *path)
-{
-    if (path)
-        glintL_json_string(out, path);
-    else
-        fputs("null", out);
-}
-
 static void print_pass_files(FILE *out, const glintL_record *record)
 {
     int count = 0;
@@ -77,9 +69,7 @@ static void print_pass_files(FILE *out, const glintL_record *record)
             snprintf(name, sizeof name, "d:%s", record->derivative[pass - GLINT_PASS_DERIVATIVE]);
         else if (glintL_light_pass_at(record->light_passes, (size_t)pass - GLINT_PASS_LIGHT, light))
             snprintf(name, sizeof name, "light:%s", light);
-        glintL_json_string(out, name);
-        fputc(':', out);
-        glintL_json_string(out, record->files[pass]);
+        glintL_json(out, "%s:%s", name, record->files[pass]);
     }
     if (count)
         fputc('}', out);
@@ -88,29 +78,24 @@ static void print_pass_files(FILE *out, const glintL_record *record)
 static void print_frame_json(cli_output *output, const glintL_record *record)
 {
     FILE *out = output->data;
-    fprintf(out, "{\"event\":\"frame\",\"index\":%" PRId64 ",\"file\":", record->index);
-    print_file(out, record->files[GLINT_PASS_BEAUTY]);
+    fprintf(out, "{\"event\":\"frame\",\"index\":%" PRId64, record->index);
+    glintL_json(out, ",\"file\":%s", record->files[GLINT_PASS_BEAUTY]);
     print_pass_files(out, record);
     fprintf(out, ",\"status\":\"%s\"", record->kept ? "kept" : "rendered");
     if (record->repeat)
         fprintf(out, ",\"repeat\":%d", record->repeat);
-    if (record->samples > 0) {
-        fprintf(out, ",\"samples\":%.0f,\"error\":", record->samples);
-        glintL_json_number(out, record->error);
-    }
+    if (record->samples > 0)
+        glintL_json(out, ",\"samples\":%g,\"error\":%g", record->samples, record->error);
     print_times(out, record);
     fputc(',', out);
     cli_print_rays(out, &record->stats.rays);
     fprintf(out, ",\"refined\":%" PRIu64, record->stats.refined);
-    if (*record->derivative[0] && !record->kept) {
-        fputs(",\"shifted\":", out);
-        glintL_json_number(out, (double)record->stats.shifted / record->pixel_count);
-    }
+    if (*record->derivative[0] && !record->kept)
+        glintL_json(out, ",\"shifted\":%g", (double)record->stats.shifted / record->pixel_count);
     if (record->kept) { // the pixels of a kept frame were not read
         fputs(",\"clipped\":null,\"nonfinite\":null}", out);
     } else {
-        fputs(",\"clipped\":", out);
-        glintL_json_number(out, (double)record->stats.clipped / record->pixel_count);
+        glintL_json(out, ",\"clipped\":%g", (double)record->stats.clipped / record->pixel_count);
         fprintf(out, ",\"nonfinite\":%" PRIu64 "}", record->stats.nonfinite);
     }
     cli_end_line(output);
@@ -211,9 +196,7 @@ void cli_warning_event(cli_output *output, const char *message)
 {
     if (!output->json)
         return;
-    fputs("{\"event\":\"warning\",\"message\":", output->data);
-    glintL_json_string(output->data, message);
-    fputc('}', output->data);
+    glintL_json(output->data, "{\"event\":\"warning\",\"message\":%s}", message);
     cli_end_line(output);
 }
 
@@ -223,8 +206,7 @@ static void report_figure(void *context, const char *kind, const char *path, int
     if (output->progress)
         cli_progress_film(output->progress, NULL, 0, 0);
     if (output->json) {
-        fprintf(output->data, "{\"event\":\"%s\",\"file\":", kind);
-        glintL_json_string(output->data, path);
+        glintL_json(output->data, "{\"event\":%s,\"file\":%s", kind, path);
         fprintf(output->data, ",\"frames\":%" PRId64 "}", count);
         cli_end_line(output);
     } else if (!output->quiet) {
@@ -263,8 +245,7 @@ void cli_report_error(cli_output *output, int64_t index, int exit_code, const ch
     fputs("{\"event\":\"error\"", output->data);
     if (index > 0)
         fprintf(output->data, ",\"index\":%" PRId64, index);
-    fputs(",\"message\":", output->data);
-    glintL_json_string(output->data, message);
+    glintL_json(output->data, ",\"message\":%s", message);
     fprintf(output->data, ",\"exit\":%d}", exit_code);
     cli_end_line(output);
 }

@@ -13,15 +13,6 @@ static void print_frame(FILE *out, const glintL_run *run, const glint_render_des
             desc->precision == GLINT_FLOAT ? "float" : "double");
 }
 
-// Prints `"first":"...","second":"..."`.
-static void print_pair(FILE *out, const char *first, const char *value, const char *second, const char *other)
-{
-    fprintf(out, "\"%s\":", first);
-    glintL_json_string(out, value);
-    fprintf(out, ",\"%s\":", second);
-    glintL_json_string(out, other);
-}
-
 // Prints the stages that each axis of the sweep runs again, and the order of the axes.
 static void print_order(FILE *out, const glintL_order *order)
 {
@@ -38,14 +29,13 @@ static void print_order_json(FILE *out, const glintL_order *order)
 {
     fputs(",\"sweep\":{\"axes\":[", out);
     for (int i = 0; i < order->axis_count; i++) {
-        fputs(i ? ",{" : "{", out);
-        print_pair(out, "name", order->axes[i].name, "stages", order->axes[i].stages);
-        fputc('}', out);
+        fputs(i ? "," : "", out);
+        glintL_json(out, "{\"name\":%s,\"stages\":%s}", order->axes[i].name, order->axes[i].stages);
     }
     fputs("],\"order\":[", out);
     for (int i = 0; i < order->axis_count; i++) {
         fputs(i ? "," : "", out);
-        glintL_json_string(out, order->axes[order->by_work[i]].name);
+        glintL_json(out, "%s", order->axes[order->by_work[i]].name);
     }
     fputs("]}", out);
 }
@@ -104,17 +94,11 @@ static void print_programs_json(FILE *out, const glint_plan *plan)
     for (size_t i = 0; glint_plan_program(plan, i, &use); i++) {
         char *listing = glint_program_listing(use.program);
         fputs(i ? ",{" : "{", out);
-        if (use.material) {
-            fputs("\"material\":", out);
-            glintL_json_string(out, use.material);
-            fputc(',', out);
-        }
-        fputs("\"field\":", out);
-        glintL_json_string(out, use.field);
-        fprintf(out, ",\"instructions\":%zu,\"rows\":%zu,\"listing\":", glint_program_length(use.program),
-                glint_program_rows(use.program));
-        glintL_json_string(out, listing ? listing : "");
-        fputc('}', out);
+        if (use.material)
+            glintL_json(out, "\"material\":%s,", use.material);
+        glintL_json(out, "\"field\":%s", use.field);
+        fprintf(out, ",\"instructions\":%zu,\"rows\":%zu", glint_program_length(use.program), glint_program_rows(use.program));
+        glintL_json(out, ",\"listing\":%s}", listing ? listing : "");
         free(listing);
     }
     fputc(']', out);
@@ -128,24 +112,19 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     const glint_render_desc *desc = glint_plan_render_desc(plan);
     size_t effect_count = glint_plan_effects(plan, &effects), stage_count = glint_plan_stages(plan, &stages);
     glint_ray_counts rays = glint_plan_expected_rays(plan);
-    fputs("{\"event\":\"plan\",\"script\":", out);
-    glintL_json_string(out, run->script);
+    glintL_json(out, "{\"event\":\"plan\",\"script\":%s", run->script);
     fprintf(out,
             ",\"index\":%" PRId64 ",\"width\":%.0f,\"height\":%.0f,\"samples\":%.0f,\"precision\":\"%s\",\"effects\":[",
             run->explain_frame, desc->width, desc->height, desc->samples,
             desc->precision == GLINT_FLOAT ? "float" : "double");
     for (size_t i = 0; i < effect_count; i++) {
-        fputs(i ? ",{" : "{", out);
-        print_pair(out, "effect", effects[i].effect, "caller", effects[i].caller);
-        fputc('}', out);
+        fputs(i ? "," : "", out);
+        glintL_json(out, "{\"effect\":%s,\"caller\":%s}", effects[i].effect, effects[i].caller);
     }
     fputs("],\"stages\":[", out);
     for (size_t i = 0; i < stage_count; i++) {
-        fputs(i ? ",{" : "{", out);
-        print_pair(out, "name", stages[i].name, "key", stages[i].key);
-        fputs(",\"why\":", out);
-        glintL_json_string(out, stages[i].why);
-        fputc('}', out);
+        fputs(i ? "," : "", out);
+        glintL_json(out, "{\"name\":%s,\"key\":%s,\"why\":%s}", stages[i].name, stages[i].key, stages[i].why);
     }
     fputs("],", out);
     cli_print_rays(out, &rays);

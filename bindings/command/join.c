@@ -167,8 +167,7 @@ static int make(join *j, const cli_options *options)
 static void report(cli_output *output, const char *path, size_t count)
 {
     if (output->json) {
-        fputs("{\"event\":\"joined\",\"file\":", output->data);
-        glintL_json_string(output->data, path);
+        glintL_json(output->data, "{\"event\":\"joined\",\"file\":%s", path);
         fprintf(output->data, ",\"parts\":%zu}", count);
         cli_end_line(output);
     } else if (!output->quiet) {

@@ -1,5 +1,6 @@
 // Writes numbers and strings as JSON.
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,4 +61,24 @@ void glintL_json_string(FILE *out, const char *text)
         at += length ? length : 1;
     }
     fputc('"', out);
+}
+
+void glintL_json(FILE *out, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    for (const char *at = format; *at; at++) {
+        if (*at != '%') {
+            fputc(*at, out);
+        } else if (*++at == 'g') {
+            glintL_json_number(out, va_arg(args, double));
+        } else {
+            const char *text = va_arg(args, const char *);
+            if (text)
+                glintL_json_string(out, text);
+            else
+                fputs("null", out);
+        }
+    }
+    va_end(args);
 }

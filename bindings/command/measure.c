@@ -23,8 +23,8 @@ void cli_hush_script(lua_State *L)
 static void report_exposure(cli_output *output, double stops, const glint_brightness *seen)
 {
     if (output->json) {
-        fprintf(output->data, "{\"event\":\"exposure\",\"stops\":%.2f,\"brightest\":", stops);
-        glintL_json_number(output->data, seen->most);
+        fprintf(output->data, "{\"event\":\"exposure\",\"stops\":%.2f", stops);
+        glintL_json(output->data, ",\"brightest\":%g", seen->most);
         fprintf(output->data, ",\"frames\":%" PRIu64 "}", seen->pictures);
         cli_end_line(output);
     } else if (!output->quiet) {
@@ -36,11 +36,7 @@ static void report_exposure(cli_output *output, double stops, const glint_bright
 static void report_range(cli_output *output, const double range[2])
 {
     if (output->json) {
-        fputs("{\"event\":\"range\",\"low\":", output->data);
-        glintL_json_number(output->data, range[0]);
-        fputs(",\"high\":", output->data);
-        glintL_json_number(output->data, range[1]);
-        fputc('}', output->data);
+        glintL_json(output->data, "{\"event\":\"range\",\"low\":%g,\"high\":%g}", range[0], range[1]);
         cli_end_line(output);
     } else if (!output->quiet) {
         fprintf(stderr, "colours from %.6g to %.6g\n", range[0], range[1]);

@@ -155,9 +155,7 @@ int cli_new(const cli_options *options, cli_output *output)
         return refuse(output, code == ENOSPC || code == EDQUOT ? GLINTL_EXIT_LATER : GLINTL_EXIT_FAILED, path,
                       strerror(code));
     if (output->json) {
-        fputs("{\"event\":\"new\",\"file\":", output->data);
-        glintL_json_string(output->data, path);
-        fputs("}\n", output->data);
+        glintL_json(output->data, "{\"event\":\"new\",\"file\":%s}\n", path);
     } else if (!output->quiet) {
         fprintf(stderr, "%s: a scene to start from; render it with:  glint %s\n", path, path);
     }

@@ -310,17 +310,10 @@ static void report(const reproduction *r, cli_output *output, const cli_options 
 {
     const char *word = found == SAME ? "same" : found == SAME_PIXELS ? "pixels" : "different";
     if (output->json) {
-        fputs("{\"event\":\"reproduce\",\"file\":", output->data);
-        glintL_json_string(output->data, r->file);
-        fputs(",\"script\":", output->data);
-        glintL_json_string(output->data, options->script);
+        glintL_json(output->data, "{\"event\":\"reproduce\",\"file\":%s,\"script\":%s", r->file, options->script);
         fprintf(output->data, ",\"frame\":%s,\"result\":\"%s\"", text_of(r, "glint:frame"), word);
-        if (found != SAME) {
-            fputs(",\"max_error\":", output->data);
-            glintL_json_number(output->data, result->max_error);
-            fputs(",\"reason\":", output->data);
-            glintL_json_string(output->data, r->reason);
-        }
+        if (found != SAME)
+            glintL_json(output->data, ",\"max_error\":%g,\"reason\":%s", result->max_error, r->reason);
         fputs("}\n", output->data);
         return;
     }

@@ -623,5 +623,7 @@ bool glintL_push_unknown_set(lua_State *L);
 void glintL_format_number(char out[32], double value);
 void glintL_json_string(FILE *out, const char *text);
 void glintL_json_number(FILE *out, double value); ///< null if it is not finite
+/// Prints a format that has only %s, a JSON string or null, and %g, a JSON number.
+__attribute__((format(printf, 2, 3))) void glintL_json(FILE *out, const char *format, ...);
 
 #endif

@@ -65,8 +65,7 @@ static char *make_state(const watcher *w)
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return NULL;
-    fputs("{\"script\":", out);
-    glintL_json_string(out, w->run->script);
+    glintL_json(out, "{\"script\":%s", w->run->script);
     fprintf(out,
             ",\"frame\":%" PRId64 ",\"frames\":%" PRId64 ",\"picture\":%" PRId64
             ",\"width\":%d,\"height\":%d,\"preview\":%s,\"samples\":%.0f,\"ms\":%.3f,\"params\":%s",
@@ -74,14 +73,10 @@ static char *make_state(const watcher *w)
             w->params ? w->params : "[]");
     if (w->error >= 0)
         fprintf(out, ",\"estimate\":%.3g", w->error);
-    if (*w->failure) {
-        fputs(",\"error\":", out);
-        glintL_json_string(out, w->failure);
-    }
-    if (*w->warnings) {
-        fputs(",\"warnings\":", out);
-        glintL_json_string(out, w->warnings);
-    }
+    if (*w->failure)
+        glintL_json(out, ",\"error\":%s", w->failure);
+    if (*w->warnings)
+        glintL_json(out, ",\"warnings\":%s", w->warnings);
     fputc('}', out);
     return glintL_close_text(out, &text);
 }
@@ -106,9 +101,7 @@ static void tell_change(watcher *w, const char *path)
 {
     if (!*path || !w->output->json)
         return;
-    fputs("{\"event\":\"change\",\"file\":", w->output->data);
-    glintL_json_string(w->output->data, path);
-    fputc('}', w->output->data);
+    glintL_json(w->output->data, "{\"event\":\"change\",\"file\":%s}", path);
     cli_end_line(w->output);
 }
 
@@ -119,9 +112,7 @@ static void tell_error(watcher *w, const char *message)
     watch_terminal_error(&w->terminal, message);
     if (!w->output->json)
         return;
-    fputs("{\"event\":\"error\",\"message\":", w->output->data);
-    glintL_json_string(w->output->data, message);
-    fputc('}', w->output->data);
+    glintL_json(w->output->data, "{\"event\":\"error\",\"message\":%s}", message);
     cli_end_line(w->output);
 }
 
@@ -522,12 +513,9 @@ static void tell_start(watcher *w)
         fprintf(stderr, "glint: watching at %s\n", watch_server_url(w->server));
     if (!w->output->json)
         return;
-    fputs("{\"event\":\"watch\",\"script\":", w->output->data);
-    glintL_json_string(w->output->data, w->run->script);
-    if (w->server) {
-        fputs(",\"url\":", w->output->data);
-        glintL_json_string(w->output->data, watch_server_url(w->server));
-    }
+    glintL_json(w->output->data, "{\"event\":\"watch\",\"script\":%s", w->run->script);
+    if (w->server)
+        glintL_json(w->output->data, ",\"url\":%s", watch_server_url(w->server));
     fputc('}', w->output->data);
     cli_end_line(w->output);
 }
