@@ -214,6 +214,20 @@ struct glint_plan {
     size_t effect_count, effect_capacity;
 };
 
+/// Takes a stage out of a copy of a plan.
+static inline void glint_plan_drop(glint_plan *plan, glint_stage_id id)
+{
+    const uint32_t others = ~(UINT32_C(1) << id);
+    plan->runs[id] = false;
+    for (int time = 0; time < GLINT_TIME_COUNT; time++)
+        plan->steps[time] &= others;
+    plan->limits &= others;
+    plan->admits &= others;
+    plan->singles &= others;
+    plan->before_shade &= others;
+    plan->after_shade &= others;
+}
+
 /// Returns whether anything in the scene can contribute to a term of the light.
 static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
 {

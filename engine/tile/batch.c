@@ -42,8 +42,6 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     glint_pattern_point(to->pattern, tile, walk);
     for (uint32_t i = 0; i < GLINT_LIGHT_CHUNK; i++)
         glint_tile_use_own_light(tile, i);
-    if (frame->plan->runs[GLINT_STAGE_VIEW])
-        glint_tile_lend_facets(tile, to);
 }
 
 void glint_batch_end(const glint_batch *batch, glint_tile *to)
@@ -99,8 +97,7 @@ static void take_all(glint_batch *batch, const glint_tile_frame *frame)
     for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
         batch->sample[i] = batch->ray_of[i] = (uint16_t)i;
     glint_tile_step(tile, frame, GLINT_AT_CAST, NULL);
-    if (frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_visible_light_in_sight(tile, frame))
-        glint_tile_see_lights(tile, frame, tile->active);
+    glint_tile_step(tile, frame, GLINT_AT_HITS, &(glint_sample_walk) { .rays = true });
 }
 
 /// Gives ray i sample `to`.
@@ -275,8 +272,9 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
 
 /// Computes the illumination by one light, by consecutive samples of one light, or by several similar lights. Returns
 /// the number of rows of the plan that were handled.
-static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot, uint32_t end)
+static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk, uint32_t slot, uint32_t end)
 {
+    const uint32_t first = walk->from;
     const glint_plan_light *lights = &frame->plan->lights[first];
     uint32_t slots[GLINT_LIGHT_CHUNK], shadowed[GLINT_LIGHT_CHUNK], count = 0, shadows = 0;
     do {
@@ -289,8 +287,8 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         return count;
     glint_tile_shine(tile, frame, first, slots, count);
     const uint32_t together = lights[slot].light_samples ? count : 1;
-    for (uint32_t i = 0; frame->plan->runs[GLINT_STAGE_FACET] && i < count; i += together)
-        glint_tile_facet(tile, frame, first, slots + i, together);
+    for (walk->slot = slot, walk->count = together; walk->slot < slot + count; walk->slot += together)
+        glint_tile_step(tile, frame, GLINT_AT_LIGHT, walk);
     if (shadows)
         glint_tile_occlude(tile, frame, first, shadowed, shadows);
     return count;
@@ -312,25 +310,23 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
     glint_tile *tile = &batch->tile;
     const glint_plan *plan = frame->plan;
     const uint32_t lights = any ? plan->light_count : 0;
-    uint32_t from = 0;
+    glint_sample_walk walk = { .rays = true, .points = true, .any = any, .shines = any };
     for (int k = 0; k < GLINT_TERM_LOCAL; k++)
         for (int c = 0; c < 3; c++)
             memset(tile->film.sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->film.sum[k][c]);
-    if (any && plan->runs[GLINT_STAGE_VIEW])
-        glint_tile_view(tile, frame);
+    if (any)
+        glint_tile_step(tile, frame, GLINT_AT_LIT, &walk);
     if (plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(tile, plan) & GLINT_FIELDS_PLANES)
         glint_tile_find_patterns(tile, frame);
     do {
-        const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
+        const uint32_t count = lights - walk.from < GLINT_LIGHT_CHUNK ? lights - walk.from : GLINT_LIGHT_CHUNK;
         for (uint32_t i = 0; i < count;)
-            i += shine(tile, frame, from, i, count);
-        glint_tile_shade(tile, frame, from, count);
-        if (plan->derivatives)
-            glint_tile_derive(tile, frame, from, count);
-        if (plan->tints && glint_tile_is_shadowed(tile, plan, from, count))
-            glint_tile_transparent_shadows(tile, frame, from, count);
-        from += count;
-    } while (from < lights);
+            i += shine(tile, frame, &walk, i, count);
+        glint_tile_shade(tile, frame, walk.from, count);
+        walk.count = count;
+        glint_tile_step(tile, frame, GLINT_AT_SHADED, &walk);
+        walk.from += count;
+    } while (walk.from < lights);
 }
 
 // ---- Continuing from a surface ----

@@ -71,19 +71,21 @@ static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t 
     return plan->visible_light_count && glint_tile_sees_light(tile, i);
 }
 
+double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    double d[3];
+    if (!glint_has_lane(tile->at.hits, i) && !sees_light(tile, plan, i))
+        return HUGE_VAL;
+    for (int c = 0; c < 3; c++)
+        d[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
+    return glint_real_at(tile->at.t, plan->desc.precision, i) * sqrt(vec_dot(d, d));
+}
+
 static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    const glint_precision precision = frame->plan->desc.precision;
     float depth[GLINT_TILE_SAMPLES];
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        double d[3];
-        depth[i] = HUGE_VALF;
-        if (!glint_has_lane(tile->at.hits, i) && !sees_light(tile, frame->plan, i))
-            continue;
-        for (int c = 0; c < 3; c++)
-            d[c] = glint_tile_direction(tile, precision, c, i);
-        depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
-    }
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        depth[i] = (float)glint_tile_hit_distance(tile, frame->plan, i);
     glint_tile_store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
 }
 

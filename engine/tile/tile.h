@@ -368,11 +368,6 @@ static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_f
 }
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
-/// effects/visible_light/visible_light.c: visible lights.
-/// Clears the lights seen. Returns false if no ray of the tile can see a light.
-bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame);
-/// Turns rays in `lanes` that see a light into misses at its distance. Rays and hits must be known.
-void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes);
 /// Returns whether ray i sees a light.
 static inline bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
 {
@@ -445,25 +440,20 @@ struct glint_batch;
 void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
                          const struct glint_batch *from);
 
-/// effects/transparent_shadow/transparent_shadow.c: light through transparent objects.
 /// Returns the lanes of group `g` inside an absorbing medium, whose light is tinted even without an occluder. The sample
 /// is shaded.
 static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
 {
     return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // the stage's memory begins with these lanes
 }
-/// Computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal
+
+/// tile/stages.c: computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal
 /// for GLINT_EMIT_CONE) must be known.
 void glint_tile_sample_position(const glint_tile *tile, glint_precision precision,
                                 const glint_light_sample *light_sample, double scale, uint32_t i, double out[3]);
 /// Computes the target of sample i's ray to a light, relative to its point; for a directional light the direction.
 void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                              uint32_t i, double out[3]);
-/// Returns whether one of `count` lights of the plan, from number `first` on, is hidden or dimmed at any point.
-bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count);
-/// Adds the light of `count` lights of the plan, from number `first` on, at points that they reach through
-/// transparent surfaces, or partly. The points must be known.
-void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count);
 
 /// Returns whether origins and directions of rays are in arrays: for orthographic cameras, lenses
 /// and batches.
@@ -529,13 +519,6 @@ static inline void glint_real_put(void *array, glint_precision precision, uint32
         ((double *)array)[i] = x;
 }
 
-/// effects/microfacet/microfacet.c: for frames with microfacets.
-void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame);
-void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
-                      uint32_t count);
-/// Lets a tile use another tile's own memory for the results of view and facet, after the other has shaded its sample.
-void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
-
 /// effects/vertex_shading/vertex.c: flat and Gouraud shading.
 /// Sets at.sampled to the hits that are shaded per sample. Returns whether there are any.
 bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
@@ -575,6 +558,8 @@ void glint_tile_store_pass(const glint_tile *tile, const glint_tile_frame *frame
 bool glint_tile_wants_geometry(const glint_plan *plan);
 /// Returns a component of the direction of sample i's ray.
 double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i);
+/// Returns the distance at which ray i hits something or sees a light; infinite if it does neither.
+double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i);
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.

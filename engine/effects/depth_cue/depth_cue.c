@@ -26,17 +26,6 @@ static void *create(const glint_plan *plan)
 
 static struct glint_depth_cue *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_DEPTH_CUE]; }
 
-double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i)
-{
-    double d[3];
-    if (!(tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) &&
-        !(plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_sees_light(tile, i)))
-        return HUGE_VAL;
-    for (int c = 0; c < 3; c++)
-        d[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
-    return glint_real_at(tile->at.t, plan->desc.precision, i) * sqrt(vec_dot(d, d));
-}
-
 /// Returns the share of the colour at a distance. The background does not fade.
 static double share_of(const glint_plan_depth_cue *cue, double distance)
 {

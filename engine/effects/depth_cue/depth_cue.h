@@ -15,7 +15,4 @@ static inline const glint_plan_depth_cue *glint_plan_depth_cue_of(const glint_pl
     return plan->own[GLINT_STAGE_DEPTH_CUE];
 }
 
-/// Returns the distance of the hit of pixel i; infinite without a hit.
-double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i);
-
 #endif

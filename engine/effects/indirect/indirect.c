@@ -358,7 +358,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->plan = *frame->plan;
     indirect->plan.lights = indirect->lights;
     indirect->plan.light_count = frame->plan->indirect.light_count;
-    indirect->plan.runs[GLINT_STAGE_VISIBLE_LIGHT] = false;
+    glint_plan_drop(&indirect->plan, GLINT_STAGE_VISIBLE_LIGHT);
     indirect->plan.visible_light_count = 0;
     if (frame->plan->indirect.is_sky) // the sky counts as open whatever the background is
         indirect->plan.environment = NULL;

@@ -34,15 +34,6 @@ static bool facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32
     return known;
 }
 
-void glint_tile_lend_facets(glint_tile *to, const glint_tile *from)
-{
-    to->at.facing = own_of(from)->facing;
-    for (int i = 0; i < GLINT_LIGHT_CHUNK; i++) {
-        to->at.light[i].sine2 = own_of(from)->sine2[i];
-        to->at.light[i].schlick = own_of(from)->schlick[i];
-    }
-}
-
 static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
@@ -56,7 +47,7 @@ static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
             cached->lights[i].facet = plan->lights[i].key;
 }
 
-void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame)
+static void view(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_view_args args = { .group_count = tile->group_count,
                              .hits = tile->at.hits,
@@ -70,8 +61,7 @@ void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, false);
 }
 
-void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
-                      uint32_t count)
+static void facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot[0]];
@@ -109,7 +99,7 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, glint_sam
         return;
     }
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_view(tile, frame);
+    view(tile, frame);
 }
 
 /// Computes the angles of microfacets for the rows of a light.
@@ -125,7 +115,7 @@ static void find_facets(glint_tile *tile, const glint_tile_frame *frame, glint_s
     if (!unknown_count)
         return;
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_facet(tile, frame, walk->from, unknown, unknown_count);
+    facet(tile, frame, walk->from, unknown, unknown_count);
 }
 
 static void *create(const glint_plan *plan)

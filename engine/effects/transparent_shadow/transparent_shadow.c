@@ -113,7 +113,8 @@ static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t
     return false;
 }
 
-bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count)
+/// Returns whether one of `count` lights of the plan, from number `first` on, is hidden or dimmed at any point.
+static bool is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
         if (plan->lights[first + i].shadows && is_kept_off(tile, plan, i))
@@ -590,7 +591,9 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         follow(tile, frame, index, slot, count, from, tile->group_count);
 }
 
-void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count)
+/// Adds the light of `count` lights of the plan, from number `first` on, at points that they reach through
+/// transparent surfaces, or partly. The points must be known.
+static void transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     for (uint32_t slot = 0, next; slot < count; slot = next) {
@@ -620,10 +623,10 @@ static void end(glint_renderer *renderer) { free(renderer->own[GLINT_STAGE_TINT]
 /// Adds the light of a chunk of lights through transparent objects.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    if (tile->direct || !glint_tile_is_shadowed(tile, frame->plan, walk->from, walk->count))
+    if (tile->direct || !is_shadowed(tile, frame->plan, walk->from, walk->count))
         return;
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_transparent_shadows(tile, frame, walk->from, walk->count);
+    transparent_shadows(tile, frame, walk->from, walk->count);
 }
 
 /// Leaves the points inside an absorbing medium out of the lanes of lights. No light is summed then.
@@ -645,7 +648,7 @@ static void mask_dim(glint_tile *tile, const glint_tile_frame *frame, glint_shad
 
 static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any)
 {
-    return any && (frame->plan->dims || glint_tile_is_shadowed(tile, frame->plan, 0, frame->plan->light_count));
+    return any && (frame->plan->dims || is_shadowed(tile, frame->plan, 0, frame->plan->light_count));
 }
 
 /// Runs as a part of the stages occlude and shade.

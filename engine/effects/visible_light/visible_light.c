@@ -179,7 +179,8 @@ static void find_near(struct glint_visible_light *visible_light, const glint_til
     }
 }
 
-bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame)
+/// Clears the lights seen. Returns false if no ray of the tile can see a light.
+static bool in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_visible_light *visible_light = own_of(tile);
     memset(visible_light->seen, 0, sizeof visible_light->seen);
@@ -231,7 +232,8 @@ static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i
     glint_real_put(tile->at.t, precision, i, t);
 }
 
-void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes)
+/// Turns rays in `lanes` that see a light into misses at its distance. Rays and hits must be known.
+static void see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes)
 {
     own_hits(tile, frame->plan->desc.precision);
     for (uint32_t g = 0; g < tile->group_count; g++)
@@ -306,9 +308,9 @@ static bool called(const glint_plan *plan) { return plan->visible_light_count > 
 
 static void look(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    if (glint_tile_visible_light_in_sight(tile, frame)) {
+    if (in_sight(tile, frame)) {
         glint_tile_need_rays(tile, frame, walk);
-        glint_tile_see_lights(tile, frame, tile->active);
+        see_lights(tile, frame, tile->active);
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
 }
