@@ -41,10 +41,8 @@ static const char *nearest_option(const char *name)
 static bool complain_unknown(const char *text, char *message)
 {
     char name[64];
-    if (strncmp(text, "--", 2) != 0 || strlen(text) > 60) {
-        snprintf(message, MESSAGE, "%.100s: no such option; --help lists them", text);
-        return false;
-    }
+    if (strncmp(text, "--", 2) != 0 || strlen(text) > 60)
+        return glintL_complain(message, "%.100s: no such option; --help lists them", text);
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 2, "="), text + 2);
     const char *near = nearest_option(name);
     if (near)
@@ -59,17 +57,12 @@ static bool complain(int what, const char *given, int code, char *message)
 {
     if (code > 0xff) { // a long option of glint: its value is missing, or the option takes no value
         const char *name = cli_option_list[code - 0x100].name;
-        snprintf(message, MESSAGE, "--%s: %s", name, what == ':' ? "a value is missing" : "it takes no value");
-        return false;
+        return glintL_complain(message, "--%s: %s", name, what == ':' ? "a value is missing" : "it takes no value");
     }
-    if (what == ':') {
-        snprintf(message, MESSAGE, "-%c: a value is missing", code);
-        return false;
-    }
-    if (code && strncmp(given, "--", 2) != 0) {
-        snprintf(message, MESSAGE, "-%c: no such option; --help lists them", code);
-        return false;
-    }
+    if (what == ':')
+        return glintL_complain(message, "-%c: a value is missing", code);
+    if (code && strncmp(given, "--", 2) != 0)
+        return glintL_complain(message, "-%c: no such option; --help lists them", code);
     return complain_unknown(given, message);
 }
 
@@ -121,18 +114,14 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
         if (code == '?' || code == ':')
             return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
         const cli_option *option = find_option(code);
-        if (used[option - cli_option_list] && is_given_once(option)) {
-            snprintf(message, MESSAGE, "--%s: given twice, so the first value would be lost; expected one value",
-                     option->name);
-            return false;
-        }
+        if (used[option - cli_option_list] && is_given_once(option))
+            return glintL_complain(message, "--%s: given twice, so the first value would be lost; expected one value",
+                                   option->name);
         used[option - cli_option_list] = true;
         if (cli_option_may_lack(option) && !optarg && optind < argc && is_number(argv[optind]))
             optarg = argv[optind++];
-        if (!option->read(options, option, optarg, wrong)) {
-            snprintf(message, MESSAGE, "--%s: %.1000s", option->name, wrong);
-            return false;
-        }
+        if (!option->read(options, option, optarg, wrong))
+            return glintL_complain(message, "--%s: %.1000s", option->name, wrong);
     }
 }
 
@@ -211,16 +200,13 @@ static bool check_output(cli_options *options, char *message)
     int field = glintL_render_find("output");
     if (!options->output || !(options->command & (CLI_RENDER | CLI_EXPLAIN)))
         return true;
-    if (options->request.fps > 0 && glintL_film_kind_of(options->output, options->request.apng) == GLINTL_FILM_NONE) {
-        snprintf(message, MESSAGE, "--fps: only films have a frame rate; -o '%.200s' is a picture",
-                 options->output);
-        return false;
-    }
+    if (options->request.fps > 0 && glintL_film_kind_of(options->output, options->request.apng) == GLINTL_FILM_NONE)
+        return glintL_complain(message, "--fps: only films have a frame rate; -o '%.200s' is a picture",
+                               options->output);
     options->request.render_text[field] = options->output;
     if (glintL_render_set_text(&scratch, field, options->output, wrong))
         return true;
-    snprintf(message, MESSAGE, "--output: %.1000s", wrong);
-    return false;
+    return glintL_complain(message, "--output: %.1000s", wrong);
 }
 
 // Checks that an untrusted script writes its pictures to one folder.
@@ -252,10 +238,8 @@ static bool check_input(const cli_options *options, char *message)
         (options->command & (CLI_RENDER | CLI_EXPLAIN) && !options->sweep_count && !options->dialect &&
          !options->untrusted_s && !options->finds_exposure && !options->finds_range))
         return true;
-    snprintf(message, MESSAGE,
-             "-: expected a file; only render and explain read a script from standard input, and not with --sweep, "
-             "--dialect, --untrusted or auto");
-    return false;
+    return glintL_complain(message, "-: expected a file; only render and explain read a script from standard input, "
+                                    "and not with --sweep, --dialect, --untrusted or auto");
 }
 
 // Options that measure all pictures first belong only to commands that render.
@@ -263,10 +247,10 @@ static bool check_auto(const cli_options *options, char *message)
 {
     if ((!options->finds_exposure && !options->finds_range) || options->command == CLI_RENDER || options->help)
         return true;
-    snprintf(message, MESSAGE, "--%s: auto works only with glint render, which measures all pictures first; expected "
-                               "%s",
-             options->finds_exposure ? "exposure" : "colormap", options->finds_exposure ? "a number of stops" : "NAME:LOW:HIGH");
-    return false;
+    return glintL_complain(message,
+                           "--%s: auto works only with glint render, which measures all pictures first; expected %s",
+                           options->finds_exposure ? "exposure" : "colormap",
+                           options->finds_exposure ? "a number of stops" : "NAME:LOW:HIGH");
 }
 
 // Checks the options that go with --until and --seconds, which choose the samples of each picture.
@@ -293,39 +277,29 @@ static bool check_samples(const cli_options *options, char *message)
 static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
-        if (used[i] && !options->help && !(cli_option_list[i].commands & options->command)) {
-            snprintf(message, MESSAGE, "--%s: this command does not have this option; --help lists its options", cli_option_list[i].name);
-            return false;
-        }
+        if (used[i] && !options->help && !(cli_option_list[i].commands & options->command))
+            return glintL_complain(message, "--%s: this command does not have this option; --help lists its options",
+                                   cli_option_list[i].name);
     }
-    if (options->verbose && !options->version) {
-        snprintf(message, MESSAGE, "--verbose: expected together with --version");
-        return false;
-    }
-    if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump)) {
-        snprintf(message, MESSAGE, "--frames: use either --frames or --start, --end and --jump, not both");
-        return false;
-    }
-    if (options->end && options->end < (options->start ? options->start : 1)) {
-        snprintf(message, MESSAGE, "--end: expected a frame >= %" PRId64 ", got '%" PRId64 "'", options->start,
-                 options->end);
-        return false;
-    }
+    if (options->verbose && !options->version)
+        return glintL_complain(message, "--verbose: expected together with --version");
+    if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump))
+        return glintL_complain(message, "--frames: use either --frames or --start, --end and --jump, not both");
+    if (options->end && options->end < (options->start ? options->start : 1))
+        return glintL_complain(message, "--end: expected a frame >= %" PRId64 ", got '%" PRId64 "'", options->start,
+                               options->end);
     for (size_t i = 0; i < options->sweep_count; i++) {
         bool twice = false;
         for (size_t j = 0; j < options->request.set_count; j++)
             twice = twice || strcmp(options->request.sets[j].name, options->sweeps[i].name) == 0;
         for (size_t j = 0; j < i; j++)
             twice = twice || strcmp(options->sweeps[j].name, options->sweeps[i].name) == 0;
-        if (twice) {
-            snprintf(message, MESSAGE, "--sweep %.200s: the parameter is set twice; set it only once", options->sweeps[i].name);
-            return false;
-        }
+        if (twice)
+            return glintL_complain(message, "--sweep %.200s: the parameter is set twice; set it only once",
+                                   options->sweeps[i].name);
     }
-    if (cli_sweep_points(options) > GLINTL_FRAMES_MAX) {
-        snprintf(message, MESSAGE, "--sweep: expected at most %d points in total", GLINTL_FRAMES_MAX);
-        return false;
-    }
+    if (cli_sweep_points(options) > GLINTL_FRAMES_MAX)
+        return glintL_complain(message, "--sweep: expected at most %d points in total", GLINTL_FRAMES_MAX);
     return check_auto(options, message) && check_samples(options, message) && cli_check_dialect(options, message);
 }
 

@@ -161,16 +161,10 @@ const char *const cli_dialect_options[CLI_DIALECT_OPTIONS] = { "order", "pixel",
 bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_SIZE])
 {
     for (int i = 0; i < CLI_DIALECT_OPTIONS && !options->dialect; i++)
-        if (options->dialect_text[i]) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--gr-%s: expected together with --dialect gr",
-                     cli_dialect_options[i]);
-            return false;
-        }
-    if (options->dialect && options->untrusted_s > 0) {
-        snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "--dialect: cannot be combined with --untrusted, because scenes of the dialect use files, modules "
-                 "and libraries of Lua");
-        return false;
-    }
+        if (options->dialect_text[i])
+            return glintL_complain(message, "--gr-%s: expected together with --dialect gr", cli_dialect_options[i]);
+    if (options->dialect && options->untrusted_s > 0)
+        return glintL_complain(message, "--dialect: cannot be combined with --untrusted, because scenes of the dialect "
+                                        "use files, modules and libraries of Lua");
     return true;
 }

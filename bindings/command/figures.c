@@ -39,9 +39,8 @@ static bool find_map(const char *name, glint_colormap *out, char message[GLINTL_
             return true;
         near = glintL_nearer(name, near, known);
     }
-    snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: viridis, magma, cividis, turbo or coolwarm expected, got '%s'%s%s%s", name,
-             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-    return false;
+    return glintL_complain(message, "--colorbar: viridis, magma, cividis, turbo or coolwarm expected, got '%s'%s%s%s",
+                           name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 // Reads MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: the text has neither form, and the message says so.
@@ -58,10 +57,9 @@ static bool read_colorbar(const char *text, glint_overlay_desc *bar, char messag
     snprintf(map, sizeof map, "%.*s", (int)size, text);
     if (!find_map(map, &bar->map, message))
         return false;
-    if (strlen(high) > GLINT_OVERLAY_TEXT_SIZE) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--colorbar: expected a title of at most %d bytes", GLINT_OVERLAY_TEXT_SIZE - 1);
-        return false;
-    }
+    if (strlen(high) > GLINT_OVERLAY_TEXT_SIZE)
+        return glintL_complain(message, "--colorbar: expected a title of at most %d bytes",
+                               GLINT_OVERLAY_TEXT_SIZE - 1);
     snprintf(bar->text, sizeof bar->text, "%s", *high ? high + 1 : "");
     return true;
 }

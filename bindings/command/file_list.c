@@ -18,10 +18,8 @@ static bool find_numbers(const char *pattern, int64_t **numbers, size_t *count, 
     size_t before = strcspn(name, "%#"), capacity = 0;
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - pattern) + 1 : 1, slash ? pattern : ".");
     DIR *directory = opendir(folder);
-    if (!directory) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %s", folder, strerror(errno));
-        return false;
-    }
+    if (!directory)
+        return glintL_complain(message, "%.200s: %s", folder, strerror(errno));
     bool good = true;
     for (struct dirent *entry; good && (entry = readdir(directory));) {
         if (strlen(entry->d_name) <= before || entry->d_name[before] < '0' || entry->d_name[before] > '9')
@@ -121,10 +119,8 @@ static bool add_file(cli_file_list *out, const char *path, int64_t number, char 
     if (numbers)
         out->numbers = numbers;
     char *copy = grown && numbers ? strdup(path) : NULL;
-    if (!copy) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-        return false;
-    }
+    if (!copy)
+        return glintL_complain(message, "out of memory");
     out->numbers[out->count] = number;
     out->files[out->count++] = copy;
     return true;

@@ -32,8 +32,7 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
         *out = value;
         return true;
     }
-    snprintf(message, MESSAGE, "whole number %" PRId64 " .. %" PRId64 " expected, got '%.200s'", min, max, text);
-    return false;
+    return glintL_complain(message, "whole number %" PRId64 " .. %" PRId64 " expected, got '%.200s'", min, max, text);
 }
 
 // Returns the member for the value, at the offset in the option's row.
@@ -75,8 +74,7 @@ static bool read_real(cli_options *options, const cli_option *option, char *text
         *(double *)value_of(options, option) = value;
         return true;
     }
-    snprintf(message, MESSAGE, "%s expected, got '%.200s'", option->expected, text);
-    return false;
+    return glintL_complain(message, "%s expected, got '%.200s'", option->expected, text);
 }
 
 // Returns which of the words "show|error|none" the text is, from 0; -1: none, and writes the message.
@@ -145,8 +143,7 @@ static bool read_exposure(cli_options *options, const cli_option *option, char *
     options->finds_exposure = strcmp(text, "auto") == 0;
     if (options->finds_exposure || read_render(options, option, text, message))
         return true;
-    snprintf(message, MESSAGE, "number -32 .. 32 or auto expected, got '%.200s'", text);
-    return false;
+    return glintL_complain(message, "number -32 .. 32 or auto expected, got '%.200s'", text);
 }
 
 // Reads --colormap. NAME:auto takes the range of all pictures.
@@ -167,10 +164,8 @@ static bool read_size(cli_options *options, const cli_option *option, char *text
     bool good = end > text && (*end == 'x' || *end == 'X') && end[1] >= '0' && end[1] <= '9';
     if (good)
         height = strtol(end + 1, &end, 10);
-    if (!good || *end || width < 1 || width > GLINT_SIDE_MAX || height < 1 || height > GLINT_SIDE_MAX) {
-        snprintf(message, MESSAGE, "WxH with sides 1 .. %d expected, got '%.200s'", GLINT_SIDE_MAX, text);
-        return false;
-    }
+    if (!good || *end || width < 1 || width > GLINT_SIDE_MAX || height < 1 || height > GLINT_SIDE_MAX)
+        return glintL_complain(message, "WxH with sides 1 .. %d expected, got '%.200s'", GLINT_SIDE_MAX, text);
     snprintf(options->width, sizeof options->width, "%ld", width);
     snprintf(options->height, sizeof options->height, "%ld", height);
     options->request.render_text[glintL_render_find("width")] = options->width;
@@ -182,14 +177,10 @@ static bool read_set(cli_options *options, const cli_option *option, char *text,
 {
     (void)option;
     char *equals = strchr(text, '=');
-    if (!equals || equals == text) {
-        snprintf(message, MESSAGE, "name=value expected, got '%.200s'", text);
-        return false;
-    }
-    if (!cli_add_set(&options->request, text, equals + 1)) {
-        snprintf(message, MESSAGE, "out of memory");
-        return false;
-    }
+    if (!equals || equals == text)
+        return glintL_complain(message, "name=value expected, got '%.200s'", text);
+    if (!cli_add_set(&options->request, text, equals + 1))
+        return glintL_complain(message, "out of memory");
     *equals = '\0'; // ends the name
     return true;
 }
@@ -199,15 +190,11 @@ static bool read_light(cli_options *options, const cli_option *option, char *tex
 {
     (void)option;
     const char *equals = strrchr(text, '=');
-    if (!equals || equals == text || !equals[1]) {
-        snprintf(message, MESSAGE, "NAME=STRENGTH or NAME=COLOUR expected, got '%.200s'", text);
-        return false;
-    }
+    if (!equals || equals == text || !equals[1])
+        return glintL_complain(message, "NAME=STRENGTH or NAME=COLOUR expected, got '%.200s'", text);
     const char **grown = realloc(options->lights, (options->light_count + 1) * sizeof *grown);
-    if (!grown) {
-        snprintf(message, MESSAGE, "out of memory");
-        return false;
-    }
+    if (!grown)
+        return glintL_complain(message, "out of memory");
     options->lights = grown;
     grown[options->light_count++] = text;
     return true;
@@ -217,10 +204,8 @@ static bool read_sweep(cli_options *options, const cli_option *option, char *tex
 {
     (void)option;
     cli_sweep *grown = realloc(options->sweeps, (options->sweep_count + 1) * sizeof *grown);
-    if (!grown) {
-        snprintf(message, MESSAGE, "out of memory");
-        return false;
-    }
+    if (!grown)
+        return glintL_complain(message, "out of memory");
     options->sweeps = grown;
     return cli_read_sweep(text, &grown[options->sweep_count++], message);
 }
@@ -237,10 +222,8 @@ static bool read_memory(cli_options *options, const cli_option *option, char *te
     for (const char *at = suffixes; suffix && at <= suffix; at++)
         size *= 1024;
     good = good && (*end == '\0' || (suffix && end[1] == '\0'));
-    if (!good || !(size >= 0 && size <= 0x1p50)) {
-        snprintf(message, MESSAGE, "size such as 512M or 4G expected, got '%.200s'", text);
-        return false;
-    }
+    if (!good || !(size >= 0 && size <= 0x1p50))
+        return glintL_complain(message, "size such as 512M or 4G expected, got '%.200s'", text);
     options->request.no_reuse = options->request.no_reuse || size < 1;
     options->request.reuse_memory = (size_t)size;
     return true;

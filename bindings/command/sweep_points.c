@@ -76,12 +76,10 @@ static bool ensure_capacity(cli_sweep *sweep, int64_t count, size_t bytes, char 
 
 static bool list_range(cli_sweep *sweep, const range *r, char *message)
 {
-    if (r->has_factor && !(r->to / r->from > 0 && isfinite(r->to / r->from))) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: expected two ends of the same sign, neither of them 0, for steps "
-                                               "of equal factors",
-                 sweep->name);
-        return false;
-    }
+    if (r->has_factor && !(r->to / r->from > 0 && isfinite(r->to / r->from)))
+        return glintL_complain(message,
+                               "%s: expected two ends of the same sign, neither of them 0, for steps of equal factors",
+                               sweep->name);
     if (!ensure_capacity(sweep, r->count, (size_t)r->count * NUMBER_SIZE, message))
         return false;
     for (int64_t i = 0; i < r->count; i++) {
@@ -106,11 +104,9 @@ static bool list_words(cli_sweep *sweep, const char *text, char *message)
         sweep->values[i] = at;
         at += strcspn(at, ",");
         *at++ = '\0';
-        if (*sweep->values[i] == '\0') {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "%s: a value expected before and after each comma, got '%.200s'", sweep->name,
-                     text);
-            return false;
-        }
+        if (*sweep->values[i] == '\0')
+            return glintL_complain(message, "%s: a value expected before and after each comma, got '%.200s'",
+                                   sweep->name, text);
     }
     return true;
 }
@@ -123,13 +119,11 @@ bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SI
     char *equals = strchr(text, '=');
     *sweep = (cli_sweep) { 0 };
     const bool is_list = equals && strchr(equals, ',');
-    if (!equals || equals == text || (!is_list && !read_range(equals + 1, &r))) {
-        snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "expected name=from:to:count with count 1 .. %d, such as radius=1:5:9, name=from:to:*count for "
-                 "equal factors, or a list, name=1,5,9; got '%.200s'",
-                 POINTS_MAX, text);
-        return false;
-    }
+    if (!equals || equals == text || (!is_list && !read_range(equals + 1, &r)))
+        return glintL_complain(message,
+                               "expected name=from:to:count with count 1 .. %d, such as radius=1:5:9, "
+                               "name=from:to:*count for equal factors, or a list, name=1,5,9; got '%.200s'",
+                               POINTS_MAX, text);
     *equals = '\0'; // ends the name
     sweep->name = text;
     return is_list ? list_words(sweep, equals + 1, message) : list_range(sweep, &r, message);

@@ -43,10 +43,8 @@ static bool make_folder(char *folder, char *message)
         if (next && next != '/')
             continue;
         at[1] = '\0';
-        if (mkdir(folder, 0777) != 0 && errno != EEXIST && access(folder, F_OK) != 0) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--untrusted: %.200s: %s", folder, strerror(errno));
-            return false;
-        }
+        if (mkdir(folder, 0777) != 0 && errno != EEXIST && access(folder, F_OK) != 0)
+            return glintL_complain(message, "--untrusted: %.200s: %s", folder, strerror(errno));
         at[1] = next;
     }
     return true;

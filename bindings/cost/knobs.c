@@ -479,9 +479,8 @@ bool cost_knobs_check(const char *list, char message[GLINTL_MESSAGE_SIZE])
                 used +=
                     (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? ", " : "", cost_knobs[i].name);
             }
-            snprintf(message, GLINTL_MESSAGE_SIZE, "list of %s expected, got '%s'%s%s%s", allowed, name,
-                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-            return false;
+            return glintL_complain(message, "list of %s expected, got '%s'%s%s%s", allowed, name,
+                                   near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
         }
         at += length;
     }

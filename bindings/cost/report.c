@@ -106,16 +106,13 @@ static bool make_folders(const char *folder)
 
 bool cost_report_check(const char *folder, char message[GLINTL_MESSAGE_SIZE])
 {
-    if (!*folder || strlen(folder) > GLINTL_PATH_SIZE - 2 * COST_LABEL_SIZE) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "a folder to write to expected, got '%.200s'", folder);
-        return false;
-    }
+    if (!*folder || strlen(folder) > GLINTL_PATH_SIZE - 2 * COST_LABEL_SIZE)
+        return glintL_complain(message, "a folder to write to expected, got '%.200s'", folder);
     errno = 0;
     if (make_folders(folder) && access(folder, W_OK | X_OK) == 0)
         return true;
     const int why = errno;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "a folder to write to expected, got '%.600s': %s", folder, strerror(why));
-    return false;
+    return glintL_complain(message, "a folder to write to expected, got '%.600s': %s", folder, strerror(why));
 }
 
 static glint_status write_file(const char *folder, const char *name, const void *bytes, size_t size, glint_error *error)

@@ -20,11 +20,9 @@ bool glintL_read_range(const char *text, double range[2], char message[GLINTL_ME
     double read[2] = { 0, 0 };
     const char *end = *text ? read_end(text, &read[0]) : text;
     end = *text && end ? read_end(end, &read[1]) : end;
-    if (!end || *end || (*text && read[0] == read[1])) {
-        snprintf(message, GLINTL_MESSAGE_SIZE,
-                 "NAME:LOW:HIGH with two numbers that differ expected, got '%.200s' after the name", text);
-        return false;
-    }
+    if (!end || *end || (*text && read[0] == read[1]))
+        return glintL_complain(
+            message, "NAME:LOW:HIGH with two numbers that differ expected, got '%.200s' after the name", text);
     range[0] = read[0];
     range[1] = read[1];
     return true;

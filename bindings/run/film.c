@@ -56,8 +56,7 @@ static glintL_film *add_film(glintL_run *run, const char *path, glintL_film_kind
 
 static bool refuse(char *message, const char *path, const char *why)
 {
-    snprintf(message, GLINTL_MESSAGE_SIZE, "output: '%.200s' is a film: %s", path, why);
-    return false;
+    return glintL_complain(message, "output: '%.200s' is a film: %s", path, why);
 }
 
 static void warn_no_ffmpeg(glintL_run *run, const glintL_film *film)
@@ -73,10 +72,8 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
     glintL_film_kind kind = glintL_film_kind_of(path, run->request.apng);
     if (strcmp(path, "none") == 0 || run->measures)
         return true;
-    if (run->request.apng && kind != GLINTL_FILM_APNG) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--apng: an output in .png expected, got '%.200s'", path);
-        return false;
-    }
+    if (run->request.apng && kind != GLINTL_FILM_APNG)
+        return glintL_complain(message, "--apng: an output in .png expected, got '%.200s'", path);
     if (kind == GLINTL_FILM_NONE)
         return true;
     if (run->request.is_untrusted)
@@ -164,18 +161,14 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
                         char *message)
 {
     int width = glint_picture_width(first), height = glint_picture_height(first), bits = glint_picture_bits(first);
-    if (glint_picture_width(picture) != width || glint_picture_height(picture) != height) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d",
-                 film->files[i], width, height, film->files[0], glint_picture_width(picture),
-                 glint_picture_height(picture));
-        return false;
-    }
+    if (glint_picture_width(picture) != width || glint_picture_height(picture) != height)
+        return glintL_complain(message, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d", film->files[i], width,
+                               height, film->files[0], glint_picture_width(picture), glint_picture_height(picture));
     if (glint_picture_bits(picture) == bits && glint_picture_transfer(picture) == glint_picture_transfer(first) &&
         glint_picture_channels(picture) == glint_picture_channels(first))
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: expected the same bits, transfer and channels as in %.200s",
-             film->files[i], film->files[0]);
-    return false;
+    return glintL_complain(message, "%.200s: expected the same bits, transfer and channels as in %.200s",
+                           film->files[i], film->files[0]);
 }
 
 // Refuses transparency except in an APNG, the only film that can store it.
@@ -185,15 +178,13 @@ static bool check_channels(const glintL_film *film, const glint_picture *first, 
     if (film->kind == GLINTL_FILM_APNG) {
         if ((channels == 3 || channels == 4) && glint_picture_bits(first) <= 16)
             return true;
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: a .png of RGB or RGBA expected for an APNG", film->files[0]);
-        return false;
+        return glintL_complain(message, "%.200s: a .png of RGB or RGBA expected for an APNG", film->files[0]);
     }
     if (channels == 1 || channels == 3)
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE,
-             "%.200s: has alpha, which %.200s cannot hold; an animated PNG can (.apng, or .png with --apng)",
-             film->files[0], film->path);
-    return false;
+    return glintL_complain(
+        message, "%.200s: has alpha, which %.200s cannot hold; an animated PNG can (.apng, or .png with --apng)",
+        film->files[0], film->path);
 }
 
 bool glintL_film_check_files(const glintL_film *film, bool strict, char message[GLINTL_MESSAGE_SIZE])

@@ -97,9 +97,8 @@ typedef struct file { // for messages
 
 static bool differ(char *message, const file *a, const char *has, const file *b, const char *has_instead)
 {
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s was rendered with %.150s, but %.200s with %.150s", b->path,
-             has_instead, a->path, has);
-    return false;
+    return glintL_complain(message, "%.200s was rendered with %.150s, but %.200s with %.150s", b->path, has_instead,
+                           a->path, has);
 }
 
 // Checks that both files have the same text.

@@ -324,9 +324,8 @@ static bool set_word(glintL_render *render, const detail *option, const char *te
         return good;
     describe(option, allowed);
     const char *near = option->names ? nearest_choice(option, text) : NULL;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'%s%s%s", allowed, text, near ? "; did you mean '" : "",
-             near ? near : "", near ? "'?" : "");
-    return false;
+    return glintL_complain(message, "%s expected, got '%.200s'%s%s%s", allowed, text, near ? "; did you mean '" : "",
+                           near ? near : "", near ? "'?" : "");
 }
 
 bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE])
@@ -339,8 +338,7 @@ bool glintL_render_set_text(glintL_render *render, int field, const char *text, 
     if (end != text && *end == '\0' && set_number(render, option, value))
         return true;
     describe(option, allowed);
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
-    return false;
+    return glintL_complain(message, "%s expected, got '%.200s'", allowed, text);
 }
 
 // ---- From Lua ----

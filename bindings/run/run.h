@@ -351,6 +351,8 @@ static inline int glintL_script_exit(const glintL_run *run, int status)
 {
     return status == LUA_ERRMEM && !run->request.is_untrusted ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE;
 }
+/// Writes a message, and returns false.
+__attribute__((format(printf, 2, 3))) bool glintL_complain(char message[GLINTL_MESSAGE_SIZE], const char *format, ...);
 /// Stores the failure if it is the first, and returns false. `index` 0: not about one frame.
 bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

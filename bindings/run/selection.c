@@ -72,13 +72,11 @@ bool glintL_selection_parse(glintL_selection *selection, const char *text, char 
     } while (good && !full && *at == ',' && *++at);
     if (full) {
         glintL_selection_clear(&read);
-        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-        return false;
+        return glintL_complain(message, "out of memory");
     }
     if (!good || *at || at[-1] == ',') {
         glintL_selection_clear(&read);
-        snprintf(message, GLINTL_MESSAGE_SIZE, "frames such as 1-3,5,7-20:2,90- expected, got '%.200s'", text);
-        return false;
+        return glintL_complain(message, "frames such as 1-3,5,7-20:2,90- expected, got '%.200s'", text);
     }
     glintL_selection_clear(selection);
     selection->ranges = read.ranges;
@@ -96,8 +94,7 @@ bool glintL_selection_parse_shard(glintL_selection *selection, const char *text,
         selection->shard_count = count;
         return true;
     }
-    snprintf(message, GLINTL_MESSAGE_SIZE, "K/N with 1 <= K <= N <= 1000000 expected, got '%.200s'", text);
-    return false;
+    return glintL_complain(message, "K/N with 1 <= K <= N <= 1000000 expected, got '%.200s'", text);
 }
 
 bool glintL_selection_is_whole(const glintL_selection *selection)

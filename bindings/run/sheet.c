@@ -18,15 +18,11 @@ static bool ends_in(const char *path, const char *ending)
 
 bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
 {
-    if (!ends_in(sheet->path, ".png") && !glintL_name_is_vector(sheet->path) && !ends_in(sheet->path, ".html")) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "a file name ending in .png, .svg, .pdf or .html expected, got '%.200s'",
-                 sheet->path);
-        return false;
-    }
-    if (sheet->count < 1 || sheet->count > GLINTL_SHEET_MAX) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "pictures: 1 .. %d expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
-        return false;
-    }
+    if (!ends_in(sheet->path, ".png") && !glintL_name_is_vector(sheet->path) && !ends_in(sheet->path, ".html"))
+        return glintL_complain(message, "a file name ending in .png, .svg, .pdf or .html expected, got '%.200s'",
+                               sheet->path);
+    if (sheet->count < 1 || sheet->count > GLINTL_SHEET_MAX)
+        return glintL_complain(message, "pictures: 1 .. %d expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
     if (!glintL_sheet_check_names(sheet, message))
         return false;
     if (sheet->difference > (int64_t)sheet->count)
@@ -225,10 +221,9 @@ static bool check_columns(const glintL_sheet *sheet, const glintL_axes *axes, ch
         used += (size_t)snprintf(counts + used, sizeof counts - used, "%s%zu (%s)", a ? " x " : "", axes->axis[a].count,
                                  axes->axis[a].name);
     }
-    snprintf(message, GLINTL_MESSAGE_SIZE,
-             "columns: %zu or %zu expected, so that each column of the %s pictures has one value of %s, got %lld",
-             axes->axis[0].count, product, counts, axes->axis[0].name, (long long)sheet->columns);
-    return false;
+    return glintL_complain(
+        message, "columns: %zu or %zu expected, so that each column of the %s pictures has one value of %s, got %lld",
+        axes->axis[0].count, product, counts, axes->axis[0].name, (long long)sheet->columns);
 }
 
 // Lists the names of the axes from `first` to before `end`, owned by the caller. NULL: out of memory.

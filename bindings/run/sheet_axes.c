@@ -5,11 +5,7 @@
 
 #include "bindings/run/sheet.h"
 
-static bool no_memory(char *message)
-{
-    snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-    return false;
-}
+static bool no_memory(char *message) { return glintL_complain(message, "out of memory"); }
 
 // ---- The files ----
 
@@ -19,9 +15,8 @@ static bool check_size(const glintL_sheet *sheet, const glintL_axes *axes, size_
     int other_width = glint_picture_width(axes->pictures[i]), other_height = glint_picture_height(axes->pictures[i]);
     if (width == other_width && height == other_height)
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d", sheet->files[i],
-             width, height, sheet->files[0], other_width, other_height);
-    return false;
+    return glintL_complain(message, "%.200s: %dx%d pixels expected, as in %.200s, got %dx%d", sheet->files[i], width,
+                           height, sheet->files[0], other_width, other_height);
 }
 
 static bool read_files(const glintL_sheet *sheet, glintL_axes *out, int *code, char *message)

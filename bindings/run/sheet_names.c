@@ -40,10 +40,9 @@ static bool check_format(const char *text, size_t size, char *message)
 {
     if (size <= GLINTL_FORMAT_MAX && is_format(text, size))
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE,
-             "format: at most %d bytes with one number such as %%.2f, %%g or %%e expected, got '%.*s'", GLINTL_FORMAT_MAX,
-             (int)(size < 100 ? size : 100), text);
-    return false;
+    return glintL_complain(message,
+                           "format: at most %d bytes with one number such as %%.2f, %%g or %%e expected, got '%.*s'",
+                           GLINTL_FORMAT_MAX, (int)(size < 100 ? size : 100), text);
 }
 
 static bool check_name(const char *text, size_t size, char *message)
@@ -51,9 +50,8 @@ static bool check_name(const char *text, size_t size, char *message)
     (void)text;
     if (size > 0 && size <= GLINTL_AXIS_NAME_MAX)
         return true;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "names: a name of 1 .. %d bytes expected, got %zu bytes", GLINTL_AXIS_NAME_MAX,
-             size);
-    return false;
+    return glintL_complain(message, "names: a name of 1 .. %d bytes expected, got %zu bytes", GLINTL_AXIS_NAME_MAX,
+                           size);
 }
 
 // Checks "axis=text" lines. False: the message says what is wrong.
@@ -61,11 +59,9 @@ static bool check_lines(const char *field, const char *lines, bool (*check)(cons
 {
     while (lines && *lines) {
         const size_t size = strcspn(lines, "\n"), name = strcspn(lines, "=\n") + 1;
-        if (name > size) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "%s: AXIS=TEXT expected, got '%.*s'", field, (int)(size < 100 ? size : 100),
-                     lines);
-            return false;
-        }
+        if (name > size)
+            return glintL_complain(message, "%s: AXIS=TEXT expected, got '%.*s'", field, (int)(size < 100 ? size : 100),
+                                   lines);
         if (!check(lines + name, size - name, message))
             return false;
         lines += size + (lines[size] == '\n');

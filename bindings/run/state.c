@@ -131,6 +131,15 @@ bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *
     return false;
 }
 
+bool glintL_complain(char message[GLINTL_MESSAGE_SIZE], const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, GLINTL_MESSAGE_SIZE, format, args);
+    va_end(args);
+    return false;
+}
+
 int glintL_run_exit_code(glint_status status)
 {
     switch (status) {

@@ -305,9 +305,8 @@ static bool open_listener(watch_server *server, int port, char *message)
         snprintf(server->host, sizeof server->host, "127.0.0.1:%d", ntohs(address.sin_port));
         return true;
     }
-    snprintf(message, GLINTL_MESSAGE_SIZE, "--http: port %d: %s%s", port, strerror(errno),
-             errno == EADDRINUSE ? "; --http without a number takes any free port" : "");
-    return false;
+    return glintL_complain(message, "--http: port %d: %s%s", port, strerror(errno),
+                           errno == EADDRINUSE ? "; --http without a number takes any free port" : "");
 }
 
 static bool make_token(watch_server *server)

@@ -11,10 +11,8 @@ bool watch_requests_open(watch_requests *requests, char message[GLINTL_MESSAGE_S
 {
     memset(requests, 0, sizeof *requests);
     requests->wanted = 1;
-    if (!glintL_wake_open(&requests->wake)) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "watch: %s", strerror(errno));
-        return false;
-    }
+    if (!glintL_wake_open(&requests->wake))
+        return glintL_complain(message, "watch: %s", strerror(errno));
     pthread_mutex_init(&requests->lock, NULL);
     return true;
 }
