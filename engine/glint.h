@@ -465,8 +465,10 @@ typedef struct glint_material_desc {
     bool has_specular; ///< read only by cook_torrance; false: `specular` is 1
     double specular[3]; ///< default 0
     double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
-    bool has_mirror; ///< false: `mirror` is 1 with `fresnel` and 0 without
-    double mirror[3]; ///< fraction of the light along the mirrored ray that is added; >= 0, default 0
+    bool has_mirror; ///< false: `mirror` is 1 with `fresnel` or cook_torrance, otherwise 0
+    /// Fraction of the light along the mirrored ray that is added; >= 0, default 0. cook_torrance: factor of the light
+    /// that the facets reflect from everything but the lamps, whose highlights are `specular`; default 1
+    double mirror[3];
     /// Fraction of the light along the refracted ray that is added; >= 0, default 0. It also tints the object's
     /// shadow, once for each surface that the light crosses. A totally reflected ray crosses no surface and keeps
     /// max(mirror, 1) of its light
@@ -482,9 +484,14 @@ typedef struct glint_material_desc {
     bool normalized;
     /// blinn_phong: the exponent is 4 s, which gives the highlight closest to Phong's. Other models ignore it
     bool matched;
-    // cook_torrance:
-    double roughness; ///< 0 .. 1, default 0.3; below 1e-9 it counts as 1e-9: a highlight narrower than any pixel
+    /// false: the default, 0.3 with cook_torrance and otherwise 0
+    bool has_roughness;
+    /// 0 .. 1. cook_torrance: below 1e-9 it counts as 1e-9: a highlight narrower than any pixel. Other models: 0 is a
+    /// smooth mirror or smooth glass; above, reflected and refracted rays have the distribution of microfacets, as
+    /// with cook_torrance
+    double roughness;
     glint_distribution distribution; ///< default GGX
+    // cook_torrance:
     bool has_f0; ///< false: f0 = ((ior - 1) / (ior + 1))^2
     double f0[3]; ///< reflectance at normal incidence, 0 .. 1; coloured for metals
     double opacity; ///< 0 .. 1, default 1; see glint_opacity_mode. glint_scene_cast hits the surface at any opacity
@@ -1147,6 +1154,9 @@ typedef struct glint_scene_desc {
     /// World units, > 0, may be infinite: more distant surfaces do not occlude. A transmitting surface occludes only
     /// the light that it takes; the ray continues refracted, and the distance starts again there
     double ambient_occlusion_distance;
+    /// Number of rays that a rough surface reflects or refracts for each sample of a pixel that shows it, from the
+    /// distribution of its microfacets: whole number, 0 .. 65536; 16 in a new scene. 0: rough surfaces show lamps only
+    double reflection_samples;
 } glint_scene_desc;
 
 /// Makes an empty scene without a camera. GLINT_ERR_NOMEM.

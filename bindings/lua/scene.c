@@ -321,6 +321,7 @@ static int new_scene(lua_State *L)
     lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_SCENE);
     glintL_check_status(L, "scene", &error, glint_scene_create(&scene, &error));
+    get(scene, &desc);
     box->object = scene;
     refuse_named(L);
     glintL_read_table(L, 1, "scene", glintL_fields_of(&SCENE), &desc, true);

@@ -20,6 +20,7 @@
     STAGE(ENVIRONMENT, environment) \
     STAGE(INDIRECT, indirect) \
     STAGE(BOUNCE, bounce) \
+    STAGE(ROUGH, rough) \
     STAGE(DEPTH_CUE, depth_cue) \
     STAGE(REFINE, refine) \
     STAGE(RESOLVE, resolve) \

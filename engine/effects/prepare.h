@@ -20,6 +20,8 @@ glint_status glint_sky_find(glint_plan *plan, glint_error *error);
 void glint_sky_release(const struct glint_sky *sky);
 /// Subtracts the part of the materials' ambient light that indirect light replaces.
 glint_status glint_indirect_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
+/// Finds the samples of each light, for paths that take one of them; once.
+glint_status glint_indirect_find_light_rows(glint_plan *plan, glint_error *error);
 /// Replaces a plan's lights by the lights of all times, each weighted by its share.
 glint_status glint_shutter_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
 void glint_shutter_release(glint_plan *plan);

@@ -90,7 +90,7 @@ static double count_shadowed(const glint_tile_frame *frame, const glint_extent *
     const glint_plan *plan = frame->plan;
     const double all = (double)extent->width * extent->height * plan->desc.samples;
     size_t lacking = 0;
-    if (!frame->reuse->tile_count || plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT])
+    if (!frame->reuse->tile_count || glint_plan_sends_rays(plan))
         return all;
     for (size_t i = 0; i < frame->reuse->tile_count; i++)
         lacking += lacks_shadows(frame, i);

@@ -122,8 +122,11 @@ typedef bool material_test(const glint_material_desc *desc);
 
 static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 
-static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d); }
+static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d) && !glint_material_is_rough(d); }
 static bool is_transparent(const glint_material_desc *d) { return glint_material_transmits(d); }
+static bool is_refracting(const glint_material_desc *d) { return is_transparent(d) && !glint_material_is_rough(d); }
+static bool is_rough_mirror(const glint_material_desc *d) { return glint_material_mirrors(d) && glint_material_is_rough(d); }
+static bool is_rough_glass(const glint_material_desc *d) { return is_transparent(d) && glint_material_is_rough(d); }
 static bool is_translucent(const glint_material_desc *d) { return glint_material_blends(d); }
 static bool transmits_light(const glint_material_desc *d) { return is_transparent(d) || is_translucent(d); }
 static bool is_cut_out(const glint_material_desc *d) { return glint_material_is_cut(d); }
@@ -319,9 +322,13 @@ static void list_effects(explainer *e, const glint_scene *scene)
         materials(e, "GGX microfacets", is_ggx);
         materials(e, "Beckmann microfacets", is_beckmann);
     }
-    if (plan->runs[GLINT_STAGE_BOUNCE]) {
+    if (plan->runs[GLINT_STAGE_ROUGH]) {
+        materials(e, "rough reflection", is_rough_mirror);
+        materials(e, "rough refraction", is_rough_glass);
+    }
+    if (plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_ROUGH]) {
         materials(e, "mirror reflection", is_mirror);
-        materials(e, "refraction", is_transparent);
+        materials(e, "refraction", is_refracting);
         materials(e, "absorption inside", is_absorbing);
         materials(e, "translucent surface", is_translucent);
     }

@@ -224,7 +224,9 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         plan->matte_keys[i] = matte_key(plan, i, none);
     }
     plan->all_materials_key = add_inputs(
-        plan, GLINT_READS(MATERIALS) | GLINT_READS(TINTS) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE), none);
+        plan, GLINT_READS(MATERIALS) | GLINT_READS(TINTS) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE) |
+                  GLINT_READS_OWN(ROUGH),
+        none);
     plan->all_lights_key =
         add_inputs(plan, GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) | GLINT_READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, GLINT_READS(BACKGROUND), none);

@@ -339,10 +339,12 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
         rays.primary = samples;
     if (plan->runs[GLINT_STAGE_OCCLUDE])
         rays.shadow = (samples + sides) * (plan->shadow_count - plan->spared_count);
-    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors)
+    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors && plan->sharp)
         rays.mirror = samples;
-    if (plan->runs[GLINT_STAGE_BOUNCE] && (plan->transmits || plan->clears))
+    if (plan->runs[GLINT_STAGE_BOUNCE] && ((plan->transmits && plan->sharp) || plan->clears))
         rays.refraction = samples;
+    if (plan->runs[GLINT_STAGE_ROUGH])
+        rays.mirror += samples * plan->rough_samples;
     rays.indirect = samples * plan->indirect.samples;
     return rays;
 }

@@ -98,10 +98,21 @@ typedef struct glint_bounce_material {
     double clear; ///< share of the light that goes straight on; 0 if a program computes it
     bool fresnel, mirrors, transmits; ///< in some channel
     bool clears; ///< whether the material is translucent
+    bool rough; ///< whether the rays that it reflects and refracts are spread by microfacets; then also:
+    double alpha; ///< width of their distribution
+    bool beckmann; ///< the distribution; false: GGX
+    bool facets; ///< whether highlights are of the same microfacets, so that reflected rays do not see lamps
+    double specular[3]; ///< factor of `mirror`; 1 without `facets`
+    bool schlick; ///< whether `mirror` is multiplied by Schlick's reflectance, from f0
+    double f0[3];
 } glint_bounce_material;
 
 /// Returns whether a material sends on rays: reflected, refracted or straight through it.
 static inline bool glint_sends_on(const glint_bounce_material *m) { return m->mirrors || m->transmits || m->clears; }
+/// Returns whether it reflects or refracts rays in many directions.
+static inline bool glint_is_spreading(const glint_bounce_material *m) { return (m->mirrors || m->transmits) && m->rough; }
+/// Returns whether it sends on rays in the directions of the laws of reflection and refraction.
+static inline bool glint_is_sharp(const glint_bounce_material *m) { return (m->mirrors || m->transmits) && !m->rough; }
 
 /// Indirect light; all 0: there is none.
 typedef struct glint_plan_indirect {
@@ -177,6 +188,8 @@ struct glint_plan {
     glint_bounce_material *bouncing; ///< one per material; NULL: none needs secondary rays
     bool mirrors, transmits, clears, absorbs; ///< whether some material has a mirror, transmits, is translucent;
         ///< absorbs: transmits and absorbs light
+    bool sharp; ///< whether some material is a smooth mirror or smooth glass
+    uint32_t rough_samples; ///< rays that a rough surface reflects or refracts for each sample; 0: no surface does
     glint_plan_indirect indirect;
     glint_media eye_media; ///< the media that contain the eye of a perspective camera
     bool tints; ///< whether some light casts shadows and some material transmits or is translucent, so that shadows
@@ -232,7 +245,14 @@ static inline void glint_plan_drop(glint_plan *plan, glint_stage_id id)
 static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
 {
     return term < GLINT_TERM_LOCAL ||
-           plan->runs[term == GLINT_TERM_INDIRECT ? GLINT_STAGE_INDIRECT : GLINT_STAGE_BOUNCE];
+           (term == GLINT_TERM_INDIRECT ? plan->runs[GLINT_STAGE_INDIRECT]
+                                        : plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_ROUGH]);
+}
+
+/// Returns whether rays are cast from surfaces, other than shadow rays.
+static inline bool glint_plan_sends_rays(const glint_plan *plan)
+{
+    return plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_ROUGH] || plan->runs[GLINT_STAGE_INDIRECT];
 }
 
 /// Returns the constant diffuse reflectance of a material; if a program computes it, 1 or the value without the
@@ -323,6 +343,8 @@ static inline bool glint_plan_has_indirect(const glint_scene_desc *scene)
 {
     return scene->has_ambient_occlusion || (scene->has_indirect && scene->indirect_bounces > 0);
 }
+/// Continues a key with max_depth and the materials that send on rays.
+glint_key glint_bounce_key(const glint_plan *plan, glint_key key);
 /// Continues a key with the transmission of a material.
 static inline glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key)
 {

@@ -95,8 +95,8 @@ bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *pla
 {
     if (plan->derivatives || plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->shading_points))
         return true;
-    if (!plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
-        return plan->runs[GLINT_STAGE_BOUNCE] || plan->tints;
+    if (!glint_plan_sends_rays(plan) || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
+        return glint_plan_sends_rays(plan) || plan->tints;
     for (uint32_t i = 0; i < tile->shown_count; i++) {
         if (glint_sends_on(&plan->bouncing[tile->shown[i]]))
             return true;

@@ -38,7 +38,9 @@ const glint_object_field glint_material_fields[] = {
              "reciprocal, and reflects no more light than it receives" },
     { GLINT_ROW(matched, FLAG), .doc = "for \"blinn_phong\": the exponent is 4 shininess, which looks most like Phong" },
     { GLINT_ROW(mirror, COLOR), GIVEN(has_mirror), PROGRAM(mirror), .takes = COLORS,
-      .doc = "factor >= 0 for the light of the mirrored ray. Default 0, with `fresnel` 1; nil restores the default" },
+      .doc = "factor >= 0 for the light of the mirrored ray. With \"cook_torrance\" the facets reflect everything but "
+             "lamps, whose highlights they have in any case. Default 0, with `fresnel` or \"cook_torrance\" 1; nil "
+             "restores the default" },
     { GLINT_ROW(transmission, COLOR), PROGRAM(transmission), .takes = COLORS,
       .doc = "factor >= 0 for the light of the refracted ray, at each surface; total internal reflection is not multiplied by it" },
     { GLINT_ROW(ior, NUMBER), GLINT_ABOVE_0, .initial = { 1.5 }, .takes = GLINT_TAKES_VARIABLE,
@@ -48,11 +50,12 @@ const glint_object_field glint_material_fields[] = {
              "rest" },
     { GLINT_ROW(absorption, COLOR), .takes = GLINT_TAKES_VARIABLE,
       .doc = ">= 0 per world unit: light inside is multiplied by exp(-absorption * distance)" },
-    { GLINT_ROW(roughness, NUMBER), GLINT_SHARE, .initial = { 0.3 }, PROGRAM(roughness), .takes = NUMBERS,
-      .doc = "for \"cook_torrance\", 0 .. 1; the width of the distribution is its square. Values below 1e-9 count as "
-             "1e-9" },
-    { GLINT_ROW(distribution, CHOICE), .names = distributions, .doc = "for \"cook_torrance\": the distribution of "
-                                                                      "the facets' slopes" },
+    { GLINT_ROW(roughness, NUMBER), GLINT_SHARE, GIVEN(has_roughness), .initial = { 0.3 }, PROGRAM(roughness), .takes = NUMBERS,
+      .doc = "0 .. 1, for \"cook_torrance\", mirrors and glass: the square root of the width of the distribution of "
+             "the facets' slopes. Default 0.3 for \"cook_torrance\", where values below 1e-9 count as 1e-9, otherwise "
+             "0: smooth; nil restores the default" },
+    { GLINT_ROW(distribution, CHOICE), .names = distributions, .doc = "for rough surfaces: the distribution of the "
+                                                                      "facets' slopes" },
     { GLINT_ROW(f0, COLOR), GIVEN(has_f0), .high = 1, .expected = "no surface reflects more", .follows = "ior",
       .takes = GLINT_TAKES_VARIABLE,
       .doc = "for \"cook_torrance\", 0 .. 1: reflectance at normal incidence; coloured for metals" },
@@ -172,7 +175,9 @@ static glint_status take(const glint_material_desc *desc, glint_material_desc *o
     }
     drop_signs_of_zeros(out);
     const glint_status status = glint_fields_check(glint_material_fields, out, error);
-    return status ? status : glint_check_color("specular", out->specular, error); // it is used even if unset
+    if (!status && !(out->roughness >= 0 && out->roughness <= 1)) // used even if unset, like specular
+        return glint_fail(error, GLINT_ERR_INVALID, "roughness: number 0 .. 1 expected, got %.10g", out->roughness);
+    return status ? status : glint_check_color("specular", out->specular, error);
 }
 
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error)
@@ -239,9 +244,11 @@ void glint_material_desc_resolve(glint_material_desc *desc)
         if (!desc->has_f0)
             desc->f0[c] = r * r;
         if (!desc->has_mirror)
-            desc->mirror[c] = desc->fresnel;
+            desc->mirror[c] = desc->fresnel || desc->model == GLINT_MODEL_COOK_TORRANCE;
     }
-    desc->has_ambient = desc->has_specular = desc->has_f0 = desc->has_mirror = true;
+    if (!desc->has_roughness && desc->model != GLINT_MODEL_COOK_TORRANCE)
+        desc->roughness = 0;
+    desc->has_ambient = desc->has_specular = desc->has_f0 = desc->has_mirror = desc->has_roughness = true;
 }
 
 static bool is_any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
@@ -258,9 +265,21 @@ bool glint_material_transmits(const glint_material_desc *desc)
     return desc->program.transmission || is_any(desc->transmission);
 }
 
+bool glint_material_has_facets(const glint_material_desc *desc)
+{
+    return desc->model == GLINT_MODEL_COOK_TORRANCE && !desc->program.shader;
+}
+
 bool glint_material_mirrors(const glint_material_desc *desc)
 {
-    return desc->program.mirror || (desc->has_mirror ? is_any(desc->mirror) : desc->fresnel);
+    const bool facets = glint_material_has_facets(desc);
+    return (desc->program.mirror || (desc->has_mirror ? is_any(desc->mirror) : desc->fresnel || facets)) &&
+           (!facets || glint_material_is_shiny(desc));
+}
+
+bool glint_material_is_rough(const glint_material_desc *desc)
+{
+    return glint_material_has_facets(desc) || desc->program.roughness || (desc->has_roughness && desc->roughness > 0);
 }
 
 bool glint_material_is_cut(const glint_material_desc *desc)

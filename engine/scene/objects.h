@@ -141,6 +141,9 @@ bool glint_material_is_shiny(const glint_material_desc *desc);
 /// Return whether the material transmits light anywhere, and whether it has a mirror.
 bool glint_material_transmits(const glint_material_desc *desc);
 bool glint_material_mirrors(const glint_material_desc *desc);
+bool glint_material_has_facets(const glint_material_desc *desc); ///< returns whether its highlights are of microfacets
+/// Returns whether the rays that it reflects and refracts are spread by microfacets.
+bool glint_material_is_rough(const glint_material_desc *desc);
 bool glint_material_is_cut(const glint_material_desc *desc); ///< returns whether its surfaces may have holes
 bool glint_material_blends(const glint_material_desc *desc); ///< returns whether it is translucent
 void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size);

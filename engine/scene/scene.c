@@ -51,6 +51,9 @@ const glint_object_field glint_scene_fields[] = {
     { .name = "ambient_occlusion", .type = GLINT_TYPE_TABLE, GIVEN(has_ambient_occlusion), .parts = ambient_occlusion_parts,
       .doc = "ambient light reduced by nearby surfaces, with a number of samples (16), up to a distance (infinite); "
              "not together with indirect. Default nil: off" },
+    { GLINT_ROW(reflection_samples, WHOLE), .low = 0, .high = 65536, .initial = { 16 },
+      .doc = "number of rays that a rough surface reflects or refracts for each sample of a pixel that shows it. 0: "
+             "rough surfaces show lamps only" },
     { .name = NULL },
 };
 // clang-format on
@@ -62,6 +65,7 @@ glint_status glint_scene_create(glint_scene **out, glint_error *error)
     if (!scene)
         return glint_fail_nomem(error);
     scene->references = 1;
+    glint_fields_reset(glint_scene_fields, &scene->desc);
     *out = scene;
     return GLINT_OK;
 }

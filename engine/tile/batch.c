@@ -331,6 +331,22 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
 
 // ---- Continuing from a surface ----
 
+bool glint_tile_shows(const glint_tile *tile, const glint_tile_frame *frame, bool (*test)(const glint_bounce_material *))
+{
+    const glint_bounce_material *materials = frame->plan->bouncing;
+    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the previous lane
+    if (tile->at.only)
+        return test(&materials[frame->geometry.prims[*tile->at.only].material]);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
+            if (material != last && test(&materials[material]))
+                return true;
+            last = material;
+        }
+    return false;
+}
+
 static double index_of(const glint_plan *plan, uint32_t medium)
 {
     return medium == GLINT_NO_MEDIUM ? 1 : plan->bouncing[medium].ior;
@@ -359,8 +375,7 @@ void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const g
     sides[1] = glint_media_top(&beyond);
 }
 
-/// Returns the refractive index on this side divided by the index beyond; 1 for a mirror that does not transmit.
-static double ratio_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
+double glint_batch_ratio(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
     const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
     uint32_t sides[2];
@@ -388,7 +403,7 @@ void glint_batch_find_directions(glint_batch *batch, const glint_tile *tile, con
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned bits = batch->wanted[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            glint_real_put(batch->ratio, precision, i, ratio_of(batch, tile, frame, i));
+            glint_real_put(batch->ratio, precision, i, glint_batch_ratio(batch, tile, frame, i));
         }
     if (glint_plan_bumps(frame->plan))
         glint_tile_bounce_normals(tile, frame->plan, batch->wanted, batch->ratio, args.normal);
@@ -407,6 +422,7 @@ static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, 
     ray->depth = rays->depth[i];
     ray->passes = rays->passes[i];
     ray->sight = rays->sight[i];
+    ray->blind = glint_has_lane(rays->blind, i);
     ray->scatters = rays->scatters[i];
     ray->term = rays->term[i];
     if (plan->transmits)
@@ -422,6 +438,7 @@ static void begin_ray(const glint_plan *plan, uint32_t i, glint_ray *ray)
     ray->pixel = i;
     ray->point = ray->depth = ray->passes = ray->scatters = 0;
     ray->sight = true;
+    ray->blind = false;
     ray->term = 0;
     if (plan->transmits)
         ray->media = plan->eye_media;
@@ -475,9 +492,7 @@ static bool crosses(const glint_batch *batch, uint32_t i, glint_branch branch)
     return branch == GLINT_BRANCH_STRAIGHT || (branch == GLINT_BRANCH_REFRACTED && !glint_has_lane(batch->total, i));
 }
 
-/// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any
-/// other translucent surface has none.
-static void cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, glint_media *media)
+void glint_batch_cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, glint_media *media)
 {
     if (frame->plan->bouncing[tile->surface.material[i]].transmits)
         glint_media_cross(media, medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
@@ -516,7 +531,7 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
         rays[branch].inward = glint_has_lane(tile->hit.back, i) != through;
         rays[branch].sight = rays[branch].sight && through;
         if (through && frame->plan->transmits)
-            cross(tile, frame, i, &rays[branch].media);
+            glint_batch_cross(tile, frame, i, &rays[branch].media);
     }
 }
 
@@ -543,7 +558,7 @@ static void direct(const glint_batch *batch, const glint_tile *tile, const glint
             continue;
         rays->media[n] = *media_of(batch, tile, frame, i);
         if (through)
-            cross(tile, frame, i, &rays->media[n]);
+            glint_batch_cross(tile, frame, i, &rays->media[n]);
     }
 }
 

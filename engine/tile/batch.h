@@ -97,6 +97,14 @@ static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_pl
                       (glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
     return batch->rays->sight[ray] && !seen;
 }
+/// Returns whether any visible material passes a test. The materials must be known.
+bool glint_tile_shows(const glint_tile *tile, const glint_tile_frame *frame, bool (*test)(const glint_bounce_material *));
+/// Returns the refractive index on this side of the surface of sample i divided by the index beyond; 1 for a mirror
+/// that does not transmit.
+double glint_batch_ratio(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i);
+/// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any
+/// other translucent surface has none.
+void glint_batch_cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, glint_media *media);
 /// Computes the reflected and refracted directions at the samples of `tile` in batch->wanted. `tile` is the batch's
 /// own, or one that the eye sees.
 void glint_batch_find_directions(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame);

@@ -7,6 +7,14 @@ void glint_rays_clear(glint_rays *rays, uint32_t group_count)
     rays->group_count = group_count;
     memset(rays->active, 0, group_count * sizeof *rays->active);
     memset(rays->inward, 0, group_count * sizeof *rays->inward);
+    memset(rays->blind, 0, group_count * sizeof *rays->blind);
+}
+
+/// Sets or clears the bit of lane i.
+static void put_bit(uint16_t *bits, uint32_t i, bool set)
+{
+    const unsigned bit = 1u << i % GLINT_GROUP;
+    bits[i / GLINT_GROUP] = (uint16_t)(set ? bits[i / GLINT_GROUP] | bit : bits[i / GLINT_GROUP] & ~bit);
 }
 
 void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray)
@@ -28,7 +36,8 @@ void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const 
     rays->scatters[i] = ray->scatters;
     rays->term[i] = ray->term;
     rays->active[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
-    rays->inward[i / GLINT_GROUP] |= (uint16_t)((unsigned)ray->inward << i % GLINT_GROUP);
+    put_bit(rays->inward, i, ray->inward);
+    put_bit(rays->blind, i, ray->blind);
     if (plan->transmits)
         rays->media[i] = ray->media;
 }

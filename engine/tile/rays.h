@@ -18,6 +18,7 @@ typedef struct glint_ray {
     uint16_t term; ///< the term that the ray's light is added to
     bool inward;
     bool sight; ///< true if the path has no reflection: the eye sees straight through the surfaces
+    bool blind; ///< does not see lamps, because the surface where it starts has their light already
     glint_media media; ///< media around the ray; only in frames with transparent materials
 } glint_ray;
 
@@ -33,7 +34,8 @@ typedef struct glint_rays {
     uint16_t term[GLINT_TILE_SAMPLES];
     uint32_t group_count;
     bool sight[GLINT_TILE_SAMPLES]; ///< only in frames that need coverage or have translucent surfaces
-    uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray are undefined
+    uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS], blind[GLINT_TILE_GROUPS]; ///< lanes without a ray
+        ///< are undefined
     glint_media media[GLINT_TILE_SAMPLES];
     struct glint_ray_slope *slopes; ///< one per ray and derivative, in frames with derivatives; otherwise undefined
 } glint_rays;

@@ -439,6 +439,9 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 struct glint_batch;
 void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
                          const struct glint_batch *from);
+/// effects/rough/: the same for the rays that rough surfaces of `seen` reflect and refract.
+void glint_tile_rough(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
+                      const struct glint_batch *from);
 
 /// Returns the lanes of group `g` inside an absorbing medium, whose light is tinted even without an occluder. The sample
 /// is shaded.

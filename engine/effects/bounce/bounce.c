@@ -99,7 +99,7 @@ static uint32_t passes_at(const struct glint_bounce *bounce, const glint_tile *t
 static bool goes_on(const struct glint_bounce *bounce, const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
     const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
-    return ((m->mirrors || m->transmits) && depth_at(bounce, tile, i) < plan->desc.max_depth) ||
+    return (glint_is_sharp(m) && depth_at(bounce, tile, i) < plan->desc.max_depth) ||
            (m->clears && passes_at(bounce, tile, i) < GLINT_PASSES_MAX);
 }
 
@@ -233,7 +233,8 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
     glint_batch_weigh(batch, tile, frame, i, rays.weight);
     if (plan->derivatives)
         glint_derive_split(batch, tile, frame, i, rays.slopes);
-    if (!(depth < plan->desc.max_depth)) // only the straight ray is left
+    // only the straight ray is left, or effects/rough follows the others
+    if (!(depth < plan->desc.max_depth) || plan->bouncing[tile->surface.material[i]].rough)
         memset(rays.weight, 0, GLINT_BRANCH_STRAIGHT * sizeof *rays.weight);
     if (!first && glint_has_lane(batch->total, i)) // the mirrored and the totally reflected ray have the same direction
         take_weight(plan, &rays, GLINT_BRANCH_MIRRORED, GLINT_BRANCH_REFRACTED);
@@ -343,6 +344,8 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
     collect(&bounce->batch, frame->plan, to);
     if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
         glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);
+    if (any && frame->plan->runs[GLINT_STAGE_ROUGH])
+        glint_tile_rough(to, frame, &bounce->batch.tile, &bounce->batch);
     if (any)
         spawn(bounce, frame, level);
 }
@@ -351,7 +354,8 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_bounce *bounce = tile->own[GLINT_STAGE_BOUNCE];
     glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
-    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // its paths start in sample order
+    // paths start in sample order
+    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT] || frame->plan->runs[GLINT_STAGE_ROUGH];
     memset(bounce->counts, 0, sizeof bounce->counts);
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
@@ -367,51 +371,21 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
     glint_batch_end(&bounce->batch, tile);
 }
 
-/// Continues a key with max_depth, and with the mirror, transmission and refractive index of every material.
-static glint_key own_key(const glint_plan *plan, glint_key key)
-{
-    GLINT_KEY_ADD(key, plan->desc.max_depth);
-    for (uint32_t i = 0; i < plan->material_count; i++) {
-        const glint_bounce_material *m = &plan->bouncing[i];
-        const double numbers[] = { m->ior, m->fresnel };
-        key = glint_transmission_key(m, key);
-        GLINT_KEY_ADD(key, m->mirror);
-        GLINT_KEY_ADD(key, numbers);
-    }
-    return key;
-}
-
 static bool called(const glint_plan *plan)
 {
     return plan->geometry->table.prim_count > 0 &&
-           (plan->clears || ((plan->mirrors || plan->transmits) && plan->desc.max_depth > 0));
+           (plan->clears || (plan->sharp && plan->desc.max_depth > 0));
 }
 
-/// Returns whether any visible material needs secondary rays. The materials must be known.
-static bool sends_on(const glint_tile *tile, const glint_tile_frame *frame)
+static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any)
 {
-    const glint_bounce_material *materials = frame->plan->bouncing;
-    uint32_t last = GLINT_MISS; // most lanes show the same primitive as the previous lane
-    if (tile->at.only) {
-        const glint_bounce_material *only = &materials[frame->geometry.prims[*tile->at.only].material];
-        return glint_sends_on(only);
-    }
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
-            const uint32_t material = tile->surface.material[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
-            if (material != last && glint_sends_on(&materials[material]))
-                return true;
-            last = material;
-        }
-    return false;
+    return any && glint_tile_shows(tile, frame, glint_sends_on);
 }
-
-static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any) { return any && sends_on(tile, frame); }
 
 /// Adds the light along the rays that surfaces send on.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    if (!walk->any || tile->direct || !sends_on(tile, frame))
+    if (!walk->any || tile->direct || !glint_tile_shows(tile, frame, glint_sends_on))
         return;
     glint_tile_need_points(tile, frame, walk);
     follow(tile, frame);
@@ -423,7 +397,7 @@ const glint_stage glint_stage_bounce = {
     .doc = "mirror and refraction rays, rays through translucent surfaces, and the light of these rays",
     .prepare = glint_bounce_prepare,
     .called = called,
-    .own = own_key,
+    .own = glint_bounce_key,
     .reads = GLINT_READS_OWN(BOUNCE),
     .walks = true,
     .sums = true,

@@ -10,13 +10,30 @@ static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2
 static const double *mirror_of(const glint_material_desc *desc)
 {
     static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
-    return desc->has_mirror ? desc->mirror : desc->fresnel ? white : black;
+    return desc->has_mirror ? desc->mirror : desc->fresnel || glint_material_has_facets(desc) ? white : black;
 }
 
-static void bounce_material_init(glint_bounce_material *out, const glint_plan *plan, size_t index)
+/// Fills the fields of a surface that spreads the rays that it reflects and refracts.
+static void rough_init(glint_bounce_material *out, const glint_material_desc *desc)
+{
+    glint_material_desc d = *desc;
+    glint_material_desc_resolve(&d);
+    out->rough = true;
+    out->alpha = fmax(d.roughness * d.roughness, 1e-18);
+    out->beckmann = d.distribution == GLINT_DISTRIBUTION_BECKMANN;
+    out->facets = glint_material_has_facets(&d);
+    out->fresnel = d.fresnel || (out->facets && out->transmits);
+    out->schlick = out->facets && !out->fresnel;
+    vec_copy(out->f0, d.f0);
+    for (int c = 0; c < 3 && out->facets; c++)
+        out->specular[c] = d.program.specular ? 1 : fmin(d.specular[c], GLINT_STRENGTH_MAX);
+}
+
+/// reflects: whether rough surfaces reflect and refract rays.
+static void bounce_material_init(glint_bounce_material *out, const glint_plan *plan, size_t index, bool reflects)
 {
     const glint_material_desc *desc = glint_plan_material(plan, index);
-    *out = (glint_bounce_material) { .ior = desc->ior, .fresnel = desc->fresnel };
+    *out = (glint_bounce_material) { .ior = desc->ior, .fresnel = desc->fresnel, .specular = { 1, 1, 1 } };
     out->clear = plan->translucent ? plan->translucent[index].clear : 0;
     out->clears = plan->translucent && plan->translucent[index].blends;
     glint_plan_bounded(out->mirror, mirror_of(desc), 1);
@@ -28,6 +45,10 @@ static void bounce_material_init(glint_bounce_material *out, const glint_plan *p
     }
     out->mirrors = glint_material_mirrors(desc);
     out->transmits = glint_material_transmits(desc);
+    if (glint_material_is_rough(desc))
+        rough_init(out, desc);
+    if (out->rough && !reflects)
+        out->mirrors = false;
 }
 
 /// Returns a bound of a translucent material as if it were opaque. A ray finds o times the light of the surface and
@@ -39,8 +60,10 @@ static double opaque(const glint_bounce_material *m, double bound) { return boun
 static double gain(const glint_bounce_material *m)
 {
     double most = 0;
-    for (int c = 0; c < 3; c++)
-        most = fmax(most, m->fresnel ? fmax(m->mirror[c], m->transmission[c]) : m->mirror[c] + m->transmission[c]);
+    for (int c = 0; c < 3; c++) {
+        const double mirror = m->mirrors ? m->mirror[c] * m->specular[c] : 0;
+        most = fmax(most, m->fresnel ? fmax(mirror, m->transmission[c]) : mirror + m->transmission[c]);
+    }
     return opaque(m, most);
 }
 
@@ -153,7 +176,7 @@ static glint_status check_depth(const glint_plan *plan, double most, glint_error
 
 glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
-    (void)from;
+    const glint_scene_desc *scene = glint_scene_get(from->scene);
     const glint_list *list = &plan->geometry->materials;
     double splitting = 0;
     bool any = false;
@@ -171,12 +194,15 @@ glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from
         return glint_fail_nomem(error);
     for (size_t i = 0; i < list->count; i++) {
         glint_bounce_material *m = &plan->bouncing[i];
-        bounce_material_init(m, plan, i);
+        bounce_material_init(m, plan, i, scene->reflection_samples > 0);
+        if (glint_is_spreading(m))
+            plan->rough_samples = (uint32_t)scene->reflection_samples;
+        plan->sharp = plan->sharp || glint_is_sharp(m);
         plan->mirrors = plan->mirrors || m->mirrors;
         plan->transmits = plan->transmits || m->transmits;
         plan->clears = plan->clears || m->clears;
         plan->absorbs = plan->absorbs || (m->transmits && brightest_of(m->absorption) > 0);
-        if (m->mirrors + m->transmits + m->clears > 1)
+        if (glint_is_sharp(m) && m->mirrors + m->transmits + m->clears > 1)
             splitting = fmax(splitting, gain(m));
     }
     bound_light(plan);
@@ -184,4 +210,23 @@ glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from
     if (!status && plan->transmits && !plan->camera.orthographic)
         status = glint_plan_eye(plan, error);
     return status;
+}
+
+glint_key glint_bounce_key(const glint_plan *plan, glint_key key)
+{
+    GLINT_KEY_ADD(key, plan->desc.max_depth);
+    for (uint32_t i = 0; i < plan->material_count; i++) {
+        const glint_bounce_material *m = &plan->bouncing[i];
+        const double numbers[] = { m->ior, m->fresnel };
+        key = glint_transmission_key(m, key);
+        GLINT_KEY_ADD(key, m->mirror);
+        GLINT_KEY_ADD(key, numbers);
+        if (!glint_is_spreading(m))
+            continue;
+        const double rough[] = { m->alpha, m->beckmann, m->facets, m->schlick };
+        GLINT_KEY_ADD(key, rough);
+        GLINT_KEY_ADD(key, m->specular);
+        GLINT_KEY_ADD(key, m->f0);
+    }
+    return key;
 }

@@ -6,12 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/// A block of 4 x 4 pixels, seen through the same sequence of mirrors, with its number.
-typedef struct pixel_block {
-    bool known;
-    uint64_t at, depth_code, number;
-} pixel_block;
-
 /// Orders the pixels of a block in squares of 2 x 2, so that each square gets an even set of numbers as well.
 static uint32_t lane_order(uint32_t lane)
 {
@@ -21,17 +15,17 @@ static uint32_t lane_order(uint32_t lane)
 
 /// Finds the block of point i of `seen`; `block`: the previous one.
 static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
-                       const glint_ray *ray, uint32_t i, pixel_block *block)
+                       const glint_ray *ray, uint32_t i, glint_pixel_block *block)
 {
     const uint32_t group = ray->pixel / GLINT_GROUP;
     const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
     const uint64_t at = x | (uint64_t)y << 32,
-                   depth_code = ray->term == GLINT_TERM_INDIRECT
+                   depth_code = indirect->salt + (ray->term == GLINT_TERM_INDIRECT
                                     ? 0
-                                    : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
+                                    : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR));
     if (!block->known || block->at != at || block->depth_code != depth_code) {
         const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), depth_code);
-        *block = (pixel_block) { .known = true, .at = at, .depth_code = depth_code, .number = number };
+        *block = (glint_pixel_block) { .known = true, .at = at, .depth_code = depth_code, .number = number };
     }
     indirect->block[i] = block->number;
     indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
@@ -48,8 +42,7 @@ static const double *first_weight(const glint_tile *seen, const glint_plan *plan
     return buffer;
 }
 
-/// Returns the number of paths of a point, which is smaller for points seen weakly in mirrors.
-static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i)
+uint32_t glint_indirect_paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i)
 {
     const double samples = plan->indirect.samples;
     double weight = 0;
@@ -58,30 +51,35 @@ static uint32_t paths_of(const glint_plan *plan, const glint_batch *from, uint32
     return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
 }
 
-/// Begins the paths of point i, with the factor `factor`. Their first rays differ only in the direction. Returns the
-/// number of paths.
-static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
-                            const glint_tile *seen, const glint_batch *from, uint32_t i, const double *factor,
-                            pixel_block *block)
+void glint_indirect_begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan, uint32_t i,
+                                uint32_t paths, const double *factor, glint_ray *ray, glint_pixel_block *block)
 {
-    const glint_plan *plan = frame->plan;
-    const uint32_t paths = paths_of(plan, from, i);
     const double part = 1.0 / paths;
+    ray->point = i;
+    ray->least = glint_largest(ray->weight) * part * plan->indirect.least;
+    for (int c = 0; c < 3; c++) {
+        ray->direction[c] = 0;
+        ray->weight[c] = indirect->weight[c][i] = glint_weight(ray->weight[c] * (factor[c] * part));
+    }
+    glint_rays_put(&indirect->first, plan, i, ray);
+    indirect->paths[i] = paths;
+    find_block(indirect, to, plan, ray, i, block);
+    indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
+}
+
+/// Starts the scattered paths of point i. Returns their number.
+static uint32_t scatter_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
+                              const glint_tile *seen, const glint_batch *from, uint32_t i, const double *factor,
+                              glint_pixel_block *block)
+{
+    const uint32_t paths = glint_indirect_paths_of(frame->plan, from, i);
     glint_ray ray;
     glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i, &ray);
     if (!from)
         ray.term = GLINT_TERM_INDIRECT;
-    ray.point = i;
-    ray.least = glint_largest(ray.weight) * part * plan->indirect.least;
     ray.inward = glint_has_lane(seen->hit.back, i);
     ray.scatters++;
-    for (int c = 0; c < 3; c++) {
-        ray.direction[c] = 0;
-        ray.weight[c] = indirect->weight[c][i] = glint_weight(ray.weight[c] * (factor[c] * part));
-    }
-    glint_rays_put(&indirect->first, plan, i, &ray);
-    indirect->paths[i] = paths;
-    find_block(indirect, to, plan, &ray, i, block);
+    glint_indirect_begin_point(indirect, to, frame->plan, i, paths, factor, &ray, block);
     return paths;
 }
 
@@ -90,7 +88,7 @@ uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint
 {
     uint32_t most = 0;
     double buffer[3];
-    pixel_block block = { .known = false };
+    glint_pixel_block block = { .known = false };
     indirect->fewest = UINT32_MAX;
     glint_rays_clear(&indirect->first, seen->group_count);
     for (uint32_t g = 0; g < seen->group_count; g++) {
@@ -99,26 +97,26 @@ uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint
             const double *factor = first_weight(seen, frame->plan, i, buffer);
             if (glint_largest(factor) == 0)
                 continue;
-            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i, factor, &block);
+            const uint32_t paths = scatter_point(indirect, to, frame, seen, from, i, factor, &block);
             most = paths > most ? paths : most;
-            indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
         }
         indirect->matt[g] = indirect->first.active[g];
     }
     return most;
 }
 
-void glint_indirect_scatter(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted,
-                            const draws *drawn, uint32_t further, double (*direction)[GLINT_TILE_SAMPLES])
+void glint_indirect_scatter(const glint_tile_frame *frame, uint32_t group_count, const void *const normal[3],
+                            const uint16_t *wanted, const draws *drawn, uint32_t further,
+                            double (*direction)[GLINT_TILE_SAMPLES])
 {
-    glint_scatter_args args = { .group_count = tile->group_count,
+    glint_scatter_args args = { .group_count = group_count,
                                 .wanted = wanted,
                                 .number = drawn->number,
                                 .order = drawn->order,
                                 .digits = { drawn->digits[0], drawn->digits[1] },
                                 .further = further };
     for (int c = 0; c < 3; c++) {
-        args.normal[c] = tile->surface.normal[c];
+        args.normal[c] = normal[c];
         args.direction[c] = direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
@@ -140,7 +138,7 @@ static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame 
 }
 
 /// Selects the points that have a path number `path`. Returns whether there are any.
-static bool choose_points(struct glint_indirect *indirect, uint32_t path)
+static bool select_points(struct glint_indirect *indirect, uint32_t path)
 {
     glint_rays *first = &indirect->first;
     unsigned any = 0;
@@ -178,14 +176,22 @@ static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, 
         }
 }
 
+bool glint_indirect_choose_points(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number)
+{
+    if (!select_points(indirect, path))
+        return false;
+    draw_first(indirect, plan, path, number);
+    return true;
+}
+
 bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
                                 uint32_t path, uint64_t number)
 {
     glint_rays *first = &indirect->first;
-    if (!choose_points(indirect, path))
+    const void *const normal[] = { seen->surface.normal[0], seen->surface.normal[1], seen->surface.normal[2] };
+    if (!glint_indirect_choose_points(indirect, frame->plan, path, number))
         return false;
-    draw_first(indirect, frame->plan, path, number);
-    glint_indirect_scatter(seen, frame, first->active, &indirect->first_draws, path, first->direction);
+    glint_indirect_scatter(frame, seen->group_count, normal, first->active, &indirect->first_draws, path, first->direction);
     weigh_first(indirect, frame, seen);
     return true;
 }

@@ -19,6 +19,7 @@
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/light_groups/light_groups.h"
 #include "engine/effects/prepare.h"
+#include "engine/effects/rough/rough.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,7 +30,7 @@ typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTE
 
 #define CHOICES (EVENT_COUNT - EVENT_SCATTERED)
 
-static void *create(const glint_plan *plan)
+struct glint_indirect *glint_indirect_create(const glint_plan *plan)
 {
     struct glint_indirect *indirect = glint_alloc(1, sizeof *indirect);
     if (!indirect)
@@ -42,7 +43,9 @@ static void *create(const glint_plan *plan)
     return indirect;
 }
 
-static void destroy(void *memory)
+static void *create(const glint_plan *plan) { return glint_indirect_create(plan); }
+
+void glint_indirect_destroy(void *memory)
 {
     struct glint_indirect *indirect = memory;
     if (!indirect)
@@ -55,8 +58,7 @@ static double mean(const double c[3]) { return ((c[0] + c[1]) + c[2]) / 3; }
 
 // ---- Random numbers ----
 
-/// Draws the point of the unit square for path `number` of point i.
-static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
+void glint_indirect_draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
 {
     const uint64_t k = glint_indirect_point_of(indirect, i, number);
     glint_sequence_scrambled((uint32_t)k, glint_indirect_seed_of(indirect, i, k, which), out);
@@ -119,7 +121,7 @@ static int choose_branch(const struct glint_indirect *indirect, uint64_t number,
         likely++;
     if (!(share[likely] < all))
         return likely;
-    draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray] + rays->passes[ray]) + 1, number_of);
+    glint_indirect_draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray] + rays->passes[ray]) + 1, number_of);
     while (last > 0 && !(share[last] > 0))
         last--;
     for (int k = 0; k < last; k++) {
@@ -128,6 +130,27 @@ static int choose_branch(const struct glint_indirect *indirect, uint64_t number,
             return k;
     }
     return last;
+}
+
+static bool is_rough(const glint_batch *batch, const glint_plan *plan, uint32_t i)
+{
+    return plan->bouncing && plan->bouncing[batch->tile.surface.material[i]].rough;
+}
+
+/// Returns whether a rough surface reflects or refracts the path.
+static bool spreads_at(const glint_batch *batch, const glint_plan *plan, uint32_t i, event what)
+{
+    return (what == EVENT_MIRRORED || what == EVENT_REFRACTED) && is_rough(batch, plan, i);
+}
+
+/// Replaces the shares of the mirrored and of the refracted ray of a rough surface.
+static void spread_shares(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i, double share[2])
+{
+    const double weight[3] = { batch->rays->weight[0][batch->ray_of[i]], batch->rays->weight[1][batch->ray_of[i]],
+                               batch->rays->weight[2][batch->ray_of[i]] };
+    glint_rough_shares(batch, &batch->tile, frame, i, share);
+    share[0] *= mean(weight);
+    share[1] *= mean(weight);
 }
 
 /// Chooses the continuation of the path of sample i, and starts the ray unless it is scattered.
@@ -149,23 +172,27 @@ static event choose(struct glint_indirect *indirect, const glint_tile_frame *fra
         share[1] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_MIRRORED].weight);
         share[2] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_REFRACTED].weight);
         share[3] = frame->plan->clears ? 3 * mean(split[GLINT_BRANCH_STRAIGHT].weight) : 0;
+        if (is_rough(batch, frame->plan, i) && !ends)
+            spread_shares(batch, frame, i, share + 1);
     }
     const double all = ((share[0] + share[1]) + share[2]) + share[3];
     if (!(all > 0))
         return EVENT_NONE;
     const int chosen = choose_branch(indirect, number, rays, ray, share, all);
     const double chance = share[chosen] / all;
-    if (chosen)
+    const event what = (event)(EVENT_SCATTERED + chosen);
+    const bool spreads = spreads_at(batch, frame->plan, i, what);
+    if (chosen && !spreads)
         *next = split[chosen - 1];
     else
         glint_batch_start_ray(batch, &batch->tile, frame, i, next);
+    if (what == EVENT_MIRRORED || what == EVENT_REFRACTED)
+        next->blind = next->scatters > 0;
     for (int c = 0; c < 3; c++) {
         next->weight[c] = glint_weight(next->weight[c] / chance);
-        least = glint_larger(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
+        least = glint_larger(least, spreads ? all / 3 : next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
-    if (least <= rays->least[ray])
-        return EVENT_NONE;
-    return (event)(EVENT_SCATTERED + chosen);
+    return least <= rays->least[ray] ? EVENT_NONE : what;
 }
 
 /// Starts the scattered ray of the path of sample i.
@@ -177,10 +204,42 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
     const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, buffer);
     const bool free = glint_indirect_leaves(tile, frame->plan, i, indirect->direction);
     next->scatters[i]++;
+    next->blind[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
     for (int c = 0; c < 3; c++) {
         glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
         next->weight[c][i] = glint_weight(next->weight[c][i] * (diffuse[c] * (free ? 1 : 0)));
     }
+}
+
+/// Notes the point of the sequence for the next direction of a path.
+static void draw_next(struct glint_indirect *indirect, const glint_ray *next, uint64_t number, uint32_t i)
+{
+    const uint64_t k = glint_indirect_point_of(indirect, next->point, number);
+    const glint_sequence_seed seed = glint_sequence_seed_of(
+        glint_indirect_seed_of(indirect, next->point, k, 2 * (next->scatters + next->depth + next->passes)));
+    glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
+}
+
+/// Continues the paths that rough surfaces reflect or refract.
+static void spread(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_rays *next)
+{
+    glint_batch *batch = &indirect->batch;
+    const void *const up[] = { indirect->up[0], indirect->up[1], indirect->up[2] };
+    glint_indirect_scatter(frame, batch->tile.group_count, up, indirect->spread, &indirect->next_draws, 0,
+                           indirect->direction);
+    for (uint32_t g = 0; g < batch->tile.group_count; g++)
+        for (unsigned bits = indirect->spread[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
+            double disk[2];
+            glint_ray ray;
+            glint_batch_start_ray(batch, &batch->tile, frame, i, &ray);
+            for (int c = 0; c < 3; c++)
+                ray.weight[c] = next->weight[c][i];
+            for (int c = 0; c < 2; c++)
+                disk[c] = glint_real_at(indirect->direction[c], frame->plan->desc.precision, i);
+            glint_rough_leave(batch, &batch->tile, frame, i, disk, (glint_branch)indirect->branch[i], &ray);
+            glint_rays_put(next, frame->plan, i, &ray);
+        }
 }
 
 /// Continues every path that has hit a surface. Returns whether there is any.
@@ -195,20 +254,19 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     glint_indirect_find_directions(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        indirect->scattered[g] = 0;
+        indirect->scattered[g] = indirect->spread[g] = 0;
         for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             glint_ray next;
             const event chosen = choose(indirect, frame, number, i, &next);
             if (chosen == EVENT_NONE)
                 continue;
-            if (chosen == EVENT_SCATTERED) {
-                const uint64_t k = glint_indirect_point_of(indirect, next.point, number);
-                const glint_sequence_seed seed = glint_sequence_seed_of(
-                    glint_indirect_seed_of(indirect, next.point, k, 2 * (next.scatters + next.depth + next.passes)));
-                glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
-                indirect->scattered[g] |= (uint16_t)(bits & -bits);
+            const bool spreads = spreads_at(batch, frame->plan, i, chosen);
+            if (chosen == EVENT_SCATTERED || spreads) {
+                draw_next(indirect, &next, number, i);
+                (spreads ? indirect->spread : indirect->scattered)[g] |= (uint16_t)(bits & -bits);
                 next.inward = glint_has_lane(tile->hit.back, i);
+                indirect->branch[i] = (uint8_t)(chosen - EVENT_MIRRORED);
             }
             glint_rays_put(rays, frame->plan, i, &next);
         }
@@ -216,10 +274,15 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     }
     if (!any)
         return false;
-    glint_indirect_scatter(tile, frame, indirect->scattered, &indirect->next_draws, 0, indirect->direction);
+    const void *const normal[] = { indirect->batch.tile.surface.normal[0], indirect->batch.tile.surface.normal[1],
+                             indirect->batch.tile.surface.normal[2] };
+    glint_indirect_scatter(frame, tile->group_count, normal, indirect->scattered, &indirect->next_draws, 0,
+                           indirect->direction);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned bits = indirect->scattered[g]; bits; bits &= bits - 1)
             leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), rays);
+    if (frame->plan->rough_samples)
+        spread(indirect, frame, rays);
     batch->rays = rays;
     return true;
 }
@@ -247,7 +310,7 @@ static void collect_group(const glint_batch *batch, const glint_plan *plan, uint
     local_light(batch, g, light);
     for (unsigned bits = lanes; bits; bits &= bits - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(bits), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
-        const bool last = rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
+        const bool last = plan->indirect.rest && rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
         double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]], weight[3];
         for (int c = 0; c < 3; c++) {
             const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
@@ -272,7 +335,7 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
         args.background[c] = background[c];
         args.sum[c] = to->film.sum[GLINT_TERM_INDIRECT][c];
     }
-    if (rays == &indirect->first && !indirect->batch.ordered) {
+    if (rays == &indirect->first && !indirect->batch.ordered && !indirect->salt) { // each ray has its own pixel
         frame->stages->sky(&args);
         return;
     }
@@ -329,8 +392,8 @@ static void light(struct glint_indirect *indirect, const glint_tile_frame *frame
         glint_tile_vertex(&batch->tile, frame);
 }
 
-/// Follows one path of each point to its end.
-static void follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to, uint64_t number)
+void glint_indirect_follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to,
+                           uint64_t number)
 {
     glint_batch *batch = &indirect->batch;
     bool any = true;
@@ -350,20 +413,28 @@ static void follow(struct glint_indirect *indirect, const glint_tile_frame *fram
     }
 }
 
+void glint_indirect_begin(struct glint_indirect *indirect, const glint_tile_frame *frame)
+{
+    indirect->plan = *frame->plan;
+    indirect->plan.lights = indirect->lights;
+    indirect->plan.light_count = frame->plan->indirect.light_count;
+    indirect->frame = *frame;
+    indirect->frame.plan = &indirect->plan;
+    for (uint32_t i = 0; frame->plan->rough_samples && i < GLINT_TILE_SAMPLES; i++)
+        for (int c = 0; c < 3; c++)
+            glint_real_put(indirect->up[c], frame->plan->desc.precision, i, c == 2);
+}
+
 void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
                          const glint_batch *from)
 {
     struct glint_indirect *indirect = tile->own[GLINT_STAGE_INDIRECT];
     glint_batch *batch = &indirect->batch;
-    indirect->plan = *frame->plan;
-    indirect->plan.lights = indirect->lights;
-    indirect->plan.light_count = frame->plan->indirect.light_count;
+    glint_indirect_begin(indirect, frame);
     glint_plan_drop(&indirect->plan, GLINT_STAGE_VISIBLE_LIGHT);
     indirect->plan.visible_light_count = 0;
     if (frame->plan->indirect.is_sky) // the sky counts as open whatever the background is
         indirect->plan.environment = NULL;
-    indirect->frame = *frame;
-    indirect->frame.plan = &indirect->plan;
     const uint32_t paths = glint_indirect_find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
     batch->ordered = from != NULL; // rays may share pixels
@@ -372,7 +443,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;
         if (glint_indirect_begin_paths(indirect, frame, seen, path, number))
-            follow(indirect, frame, tile, number);
+            glint_indirect_follow(indirect, frame, tile, number);
     }
     glint_batch_end(batch, tile);
 }
@@ -411,7 +482,7 @@ const glint_stage glint_stage_indirect = {
     .release = release,
     .called = called,
     .own = own_key,
-    .reads = GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE),
+    .reads = GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE) | GLINT_READS_OWN(ROUGH),
     .walks = true,
     .sums = true,
     .normals = true,
@@ -419,6 +490,6 @@ const glint_stage glint_stage_indirect = {
     .step[GLINT_AT_REST] = add,
     .adds = glint_tile_adds_to_hits,
     .create = create,
-    .destroy = destroy,
+    .destroy = glint_indirect_destroy,
     .sized = true,
 };

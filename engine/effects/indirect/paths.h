@@ -1,4 +1,4 @@
-/// The paths of a tile's points, shared by the files of this folder. Internal.
+/// The paths of a tile's points, for indirect light and for rough surfaces. Internal.
 #ifndef GLINT_INDIRECT_PATHS_H
 #define GLINT_INDIRECT_PATHS_H
 
@@ -11,6 +11,12 @@ typedef struct draws {
     _Alignas(64) uint32_t order[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t digits[2][GLINT_TILE_SAMPLES];
 } draws;
+
+/// A block of 4 x 4 pixels, seen through the same sequence of mirrors, with its number.
+typedef struct glint_pixel_block {
+    bool known;
+    uint64_t at, depth_code, number;
+} glint_pixel_block;
 
 struct glint_indirect {
     glint_batch batch;
@@ -27,8 +33,24 @@ struct glint_indirect {
     double weight[3][GLINT_TILE_SAMPLES]; ///< weights of these rays before anything is subtracted
     glint_rays next[2]; ///< rays of odd and even steps
     uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples whose path is scattered
+    uint16_t spread[GLINT_TILE_GROUPS]; ///< samples whose path a rough surface reflects or refracts
+    uint8_t branch[GLINT_TILE_SAMPLES]; ///< which of the two, a glint_branch
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< directions of scattered paths
+    _Alignas(64) double up[3][GLINT_TILE_SAMPLES]; ///< real: (0, 0, 1), for points of the unit disk
+    uint64_t salt; ///< distinguishes the sequences of indirect light, 0, from those of rough surfaces
 };
+
+/// Makes the memory for paths; NULL: out of memory.
+struct glint_indirect *glint_indirect_create(const glint_plan *plan);
+void glint_indirect_destroy(void *memory);
+/// Prepares for the paths of a tile in a frame.
+void glint_indirect_begin(struct glint_indirect *indirect, const glint_tile_frame *frame);
+/// Follows one path of each point from its first ray, in indirect->first, to its end, and adds its light to the sums
+/// of `to`.
+void glint_indirect_follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to,
+                           uint64_t number);
+/// Draws the point of the unit square for path `number` of point i.
+void glint_indirect_draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2]);
 
 /// Returns the maximum like fmax: for NaN and a number, the number.
 static inline double glint_larger(double a, double b) { return a > b || b != b ? a : b; }
@@ -72,9 +94,18 @@ static inline bool glint_indirect_leaves(const glint_tile *tile, const glint_pla
 /// Finds the points and their numbers of paths. Returns the largest number.
 uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint_tile *to,
                                     const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from);
-/// Computes directions around the normals of `tile` for the samples in `wanted`, with indices offset by `further`.
-void glint_indirect_scatter(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted,
-                            const draws *drawn, uint32_t further, double (*direction)[GLINT_TILE_SAMPLES]);
+/// Starts the first rays of the paths of point i, with the factor `factor`, which differ only in their directions.
+/// ray: begun by glint_batch_start_ray.
+void glint_indirect_begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan, uint32_t i,
+                                uint32_t paths, const double *factor, glint_ray *ray, glint_pixel_block *block);
+/// Returns the number of paths of a point, which is smaller for points seen weakly in mirrors.
+uint32_t glint_indirect_paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i);
+/// Selects the points that have a path number `path`, and draws for them. Returns whether there are any.
+bool glint_indirect_choose_points(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number);
+/// Computes directions around normals for the samples in `wanted`, with indices offset by `further`.
+void glint_indirect_scatter(const glint_tile_frame *frame, uint32_t group_count, const void *const normal[3],
+                            const uint16_t *wanted, const draws *drawn, uint32_t further,
+                            double (*direction)[GLINT_TILE_SAMPLES]);
 /// Makes the first rays of path number `path` of every point. Returns whether there are any.
 bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
                                 uint32_t path, uint64_t number);

@@ -36,10 +36,11 @@ static void part_ambient(glint_plan *plan, uint32_t i, double rest[3])
     }
 }
 
-/// Finds the first row of each light's samples.
-static glint_status find_lights(glint_plan *plan, glint_error *error)
+glint_status glint_indirect_find_light_rows(glint_plan *plan, glint_error *error)
 {
     glint_plan_indirect *indirect = &plan->indirect;
+    if (indirect->light_rows)
+        return GLINT_OK;
     indirect->light_rows = glint_alloc((size_t)plan->light_count + 1, sizeof *indirect->light_rows);
     if (!indirect->light_rows)
         return glint_fail_nomem(error);
@@ -70,5 +71,5 @@ glint_status glint_indirect_prepare(glint_plan *plan, const glint_plan_input *fr
     for (uint32_t i = 0; i < plan->material_count; i++)
         part_ambient(plan, i, indirect->rest[i]);
     const glint_status status = indirect->is_sky ? GLINT_OK : glint_sky_find(plan, error);
-    return status ? status : find_lights(plan, error);
+    return status ? status : glint_indirect_find_light_rows(plan, error);
 }

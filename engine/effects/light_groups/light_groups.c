@@ -64,7 +64,7 @@ static void *create_for(const glint_plan *plan)
     bool good = (sums->mean = glint_alloc(groups->pass_count, sizeof *sums->mean)) != NULL;
     if (plan->runs[GLINT_STAGE_DEPTH_CUE])
         good = (sums->faded = glint_alloc(groups->count, sizeof *sums->faded)) && good;
-    if (plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT])
+    if (glint_plan_sends_rays(plan))
         good = (sums->batch = create(groups->count)) && good;
     if (plan->runs[GLINT_STAGE_VERTEX])
         good = (sums->points = create(groups->count)) && good;

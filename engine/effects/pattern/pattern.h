@@ -9,6 +9,7 @@ typedef enum glint_walk {
     GLINT_WALK_EYE,
     GLINT_WALK_BOUNCE,
     GLINT_WALK_INDIRECT,
+    GLINT_WALK_ROUGH,
     GLINT_WALK_SHADING_POINTS, ///< points of faces and vertices
     GLINT_WALK_SHADOW, ///< surfaces between a point and a light
     GLINT_WALK_COUNT

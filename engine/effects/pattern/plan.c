@@ -42,7 +42,7 @@ static bool is_read(const glint_material_desc *desc, int field)
     case GLINT_FIELD_SHININESS:
         return shiny && (shader || !facets);
     case GLINT_FIELD_ROUGHNESS:
-        return shiny && !shader && facets;
+        return (shiny && !shader && facets) || glint_material_mirrors(desc) || glint_material_transmits(desc);
     default:
         return true;
     }

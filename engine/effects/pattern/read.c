@@ -11,15 +11,21 @@ const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const g
 {
     const uint32_t material = tile->surface.material[i];
     const glint_bounce_material *m = &plan->bouncing[material];
-    const uint32_t shares = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR;
+    const uint32_t read = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR |
+                          1u << GLINT_FIELD_ROUGHNESS | 1u << GLINT_FIELD_SPECULAR;
     double color[3];
-    if (!plan->patterns || !(plan->patterns->of[material].made & shares))
+    const uint32_t made = plan->patterns ? plan->patterns->of[material].made & read : 0;
+    if (!made)
         return m;
     *buffer = *m;
+    if (made >> GLINT_FIELD_ROUGHNESS & 1)
+        buffer->alpha = (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_ROUGHNESS, 0)[i];
     vec_copy(buffer->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
     vec_copy(buffer->transmission,
              glint_color_at(tile->at.planes, plan, GLINT_FIELD_TRANSMISSION, material, i, m->transmission, color));
-    if (plan->patterns->of[material].made >> GLINT_FIELD_CLEAR & 1)
+    if (m->facets)
+        vec_copy(buffer->specular, glint_color_at(tile->at.planes, plan, GLINT_FIELD_SPECULAR, material, i, m->specular, color));
+    if (made >> GLINT_FIELD_CLEAR & 1)
         buffer->clear = (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_CLEAR, 0)[i];
     return buffer;
 }

@@ -5,6 +5,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/effects/light_groups/light_groups.h"
+#include "engine/tile/batch.h"
 #include "engine/effects/prepare.h"
 
 #include <stdlib.h>
@@ -308,9 +309,12 @@ static bool called(const glint_plan *plan) { return plan->visible_light_count > 
 
 static void look(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    uint16_t lanes[GLINT_TILE_GROUPS];
     if (in_sight(tile, frame)) {
         glint_tile_need_rays(tile, frame, walk);
-        see_lights(tile, frame, tile->active);
+        for (uint32_t g = 0; g < tile->group_count; g++)
+            lanes[g] = (uint16_t)(tile->active[g] & ~(tile->batch ? tile->batch->rays->blind[g] : 0));
+        see_lights(tile, frame, lanes);
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
 }

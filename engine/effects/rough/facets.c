@@ -1,0 +1,185 @@
+/// The directions in which microfacets send a ray, drawn from the distribution of the normals that the ray sees
+/// (E. Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018; by caps of the hemisphere as in J.
+/// Dupuy and A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023).
+///
+/// The weight of a ray is the reflected or transmitted share at the facet, times the probability that no other facet
+/// is in its way: G2 / G1 with Smith's height-correlated G2 for reflection, and G1 of the new direction for
+/// refraction (B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
+///
+/// Facets of Beckmann's distribution are drawn from GGX too, and weighted by the quotient of the two distributions,
+/// exp(-x) (1 + x)^2 with x = tan^2 / alpha^2, which is at most 4/e.
+#include "engine/base/math.h"
+#include "engine/base/vec.h"
+#include "engine/effects/pattern/pattern.h"
+#include "engine/effects/rough/rough.h"
+
+#define BECKMANN_FAR 700 ///< x above which Beckmann's distribution has no facets in double
+#define LEAST_CHANCE 0.1 ///< of reflection and of refraction, because facets are steeper than the surface
+
+// ---- The surface ----
+
+/// A sample of a rough surface, seen along a ray.
+typedef struct view {
+    double axis[3][3]; ///< two tangents and the normal on the ray's side
+    double to_eye[3]; ///< unit vector against the ray, along these axes; the last component is >= 0
+    double direction[3]; ///< unit direction of the ray
+    double alpha;
+    bool beckmann;
+} view;
+
+static void load_normal(const glint_tile *tile, const glint_plan *plan, uint32_t i, bool bumped, double out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = glint_real_at(bumped ? tile->surface.normal[c] : tile->unbumped[c], plan->desc.precision, i);
+}
+
+/// Completes the axes (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017).
+static void find_tangents(double axis[3][3])
+{
+    const double *n = axis[2], g = n[2] >= 0 ? 1 : -1, p = -1 / (g + n[2]), q = n[0] * n[1] * p;
+    const double tangent[3] = { 1 + g * n[0] * n[0] * p, g * q, -g * n[0] };
+    const double other[3] = { q, g + n[1] * n[1] * p, -n[1] };
+    vec_copy(axis[0], tangent);
+    vec_copy(axis[1], other);
+}
+
+static view look(const glint_tile *tile, const glint_plan *plan, uint32_t i, const glint_bounce_material *m)
+{
+    view v = { .alpha = m->alpha, .beckmann = m->beckmann };
+    for (int c = 0; c < 3; c++)
+        v.direction[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
+    vec_normalize(v.direction, v.direction);
+    load_normal(tile, plan, i, true, v.axis[2]);
+    if (glint_plan_bumps(plan) && !(vec_dot(v.axis[2], v.direction) < 0))
+        load_normal(tile, plan, i, false, v.axis[2]);
+    find_tangents(v.axis);
+    for (int k = 0; k < 3; k++)
+        v.to_eye[k] = -vec_dot(v.axis[k], v.direction);
+    v.to_eye[2] = fmin(fmax(v.to_eye[2], 0), 1);
+    return v;
+}
+
+// ---- A facet ----
+
+/// Draws the normal of a facet along the axes. Returns x, its tan^2 / alpha^2.
+static double draw_facet(const view *v, const double disk[2], double facet[3])
+{
+    double eye[3] = { v->alpha * v->to_eye[0], v->alpha * v->to_eye[1], v->to_eye[2] };
+    vec_normalize(eye, eye);
+    const double u = fmin(disk[0] * disk[0] + disk[1] * disk[1], 1), top = 1 + eye[2];
+    const double stretch = sqrt(fmax(top * (2 - u * top), 0));
+    const double h[3] = { disk[0] * stretch + eye[0], disk[1] * stretch + eye[1], (1 - u) * top };
+    facet[0] = v->alpha * h[0];
+    facet[1] = v->alpha * h[1];
+    facet[2] = h[2];
+    if (vec_max_abs(facet) > 0)
+        vec_normalize(facet, facet);
+    else
+        facet[2] = 1;
+    return (h[0] * h[0] + h[1] * h[1]) / (h[2] * h[2]);
+}
+
+/// Returns the length of a direction with the cosine c after its tangential part is multiplied by alpha.
+static double stretched(double alpha, double c) { return sqrt(c * c + alpha * alpha * (1 - c * c)); }
+
+/// Returns c times Smith's Lambda of Beckmann's distribution at the cosine c, in Heitz' form of Walter's fit.
+static double beckmann_mask(double alpha, double c)
+{
+    const double s = alpha * sqrt(fmax(1 - c * c, 0)), q = c / s;
+    return q < 1.6 ? s * ((0.396 * q - 1.259) * q + 1) / (2.181 * q + 3.535) : 0;
+}
+
+/// Returns the part of the weight that depends on the distribution. c: the cosine of the new direction, on its side.
+static double unmasked(const view *v, double x, double c, bool through)
+{
+    const double eye = v->to_eye[2], a = stretched(v->alpha, eye), b = stretched(v->alpha, c);
+    if (!v->beckmann)
+        return through ? 2 * c / (c + b) : c * (eye + a) / (c * a + eye * b);
+    if (!(x < BECKMANN_FAR))
+        return 0;
+    const double quotient = glint_exp(-x) * ((1 + x) * (1 + x)) * ((eye + a) / 2); // times G1 of GGX, divided by eye
+    const double mask = beckmann_mask(v->alpha, eye), other = beckmann_mask(v->alpha, c);
+    return through ? quotient * (c / ((eye + mask) * (c + other))) : quotient * (c / (c * (eye + mask) + eye * other));
+}
+
+/// Returns the cosine of the refracted ray at a facet; a negative number for total reflection. c: the cosine of the
+/// arriving ray. ratio: see glint_batch_ratio.
+static double refracted_cosine(double c, double ratio)
+{
+    const double k = 1 - ratio * ratio * (1 - c * c);
+    return ratio == 1 ? c : k > 0 ? sqrt(k) : -1;
+}
+
+/// Returns the share of unpolarised light that a dielectric reflects (Fresnel). s: the cosine of the refracted ray.
+static double dielectric(double c, double s, double ratio)
+{
+    const double p = (ratio * c - s) / (ratio * c + s), q = (c - ratio * s) / (c + ratio * s);
+    return ratio == 1 ? 0 : s < 0 ? 1 : 0.5 * (p * p + q * q);
+}
+
+/// Returns the reflected share in channel c, without the material's factors.
+static double reflectance(const glint_bounce_material *m, int c, double cosine, double ratio)
+{
+    if (m->fresnel)
+        return dielectric(cosine, refracted_cosine(cosine, ratio), ratio);
+    const double r = 1 - cosine;
+    return m->schlick ? m->f0[c] + (1 - m->f0[c]) * ((r * r) * (r * r) * r) : 1;
+}
+
+// ---- Rays ----
+
+void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                        double share[2])
+{
+    glint_bounce_material buffer;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
+    const view v = look(tile, frame->plan, i, m);
+    const double ratio = glint_batch_ratio(batch, tile, frame, i);
+    share[0] = share[1] = 0;
+    for (int c = 0; c < 3; c++) {
+        const double r = fmax(reflectance(m, c, v.to_eye[2], ratio), LEAST_CHANCE);
+        share[GLINT_BRANCH_MIRRORED] += m->mirrors ? m->mirror[c] * m->specular[c] * r : 0;
+        if (m->transmits)
+            share[GLINT_BRANCH_REFRACTED] += fmax(m->transmission[c], LEAST_CHANCE) * (m->fresnel ? fmax(1 - r, LEAST_CHANCE) : 1);
+    }
+}
+
+/// Fills the weights of a ray at a facet. Totally reflected light has not crossed the surface: see glint_batch_weigh.
+static void weigh(const glint_bounce_material *m, glint_branch branch, double cosine, double ratio, double factor,
+                  double weight[3])
+{
+    const bool total = refracted_cosine(cosine, ratio) < 0;
+    for (int c = 0; c < 3; c++) {
+        const double r = reflectance(m, c, cosine, ratio), mirror = m->mirror[c] * m->specular[c];
+        const double beyond = (total ? fmax(1 - m->clear - mirror, 0) : m->transmission[c]) * (m->fresnel ? 1 - r : 1);
+        weight[c] = glint_weight(weight[c] * ((branch == GLINT_BRANCH_MIRRORED ? mirror * r : beyond) * factor));
+    }
+}
+
+void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                       const double disk[2], glint_branch branch, glint_ray *ray)
+{
+    glint_bounce_material buffer;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
+    const view v = look(tile, frame->plan, i, m);
+    const double ratio = glint_batch_ratio(batch, tile, frame, i);
+    double facet[3], out[3];
+    const double x = draw_facet(&v, disk, facet), cosine = fmin(vec_dot(v.to_eye, facet), 1);
+    const double s = branch == GLINT_BRANCH_REFRACTED ? refracted_cosine(cosine, ratio) : -1;
+    const bool through = s >= 0;
+    for (int k = 0; k < 3; k++)
+        out[k] = through ? (ratio * cosine - s) * facet[k] - ratio * v.to_eye[k] : 2 * cosine * facet[k] - v.to_eye[k];
+    for (int c = 0; c < 3; c++)
+        ray->direction[c] = (out[0] * v.axis[0][c] + out[1] * v.axis[1][c]) + out[2] * v.axis[2][c];
+    vec_normalize(ray->direction, ray->direction);
+    const double along = through ? -out[2] : out[2];
+    vec_scale(out, ray->direction, through ? -1 : 1);
+    const bool leaves = along > 0 && glint_tile_leaves(tile, frame->plan, i, out);
+    weigh(m, branch, cosine, ratio, leaves ? unmasked(&v, x, along, through) : 0, ray->weight);
+    ray->depth++;
+    ray->inward = glint_has_lane(tile->hit.back, i) != through;
+    ray->sight = false;
+    ray->blind = m->facets ? !through : ray->scatters > 0;
+    if (through && frame->plan->transmits)
+        glint_batch_cross(tile, frame, i, &ray->media);
+}

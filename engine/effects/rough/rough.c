@@ -1,0 +1,225 @@
+/// Rough reflection and refraction: microfacets show their surroundings.
+///
+/// From each rough point, several rays leave in the directions of facets (facets.c). Each begins a path, which
+/// effects/indirect follows. Lamps give a surface of cook_torrance their highlights, so its reflected rays do not see
+/// them; the rays of other rough mirrors and of rough glass see the lamps that are visible.
+#include "engine/base/vec.h"
+#include "engine/effects/indirect/paths.h"
+#include "engine/effects/prepare.h"
+#include "engine/effects/rough/rough.h"
+
+#include <stdlib.h>
+
+#define SALT (UINT64_C(1) << 40) ///< beyond all numbers of depths
+#define SHARP 1e-6 ///< width of a distribution within which all rays are one
+
+struct glint_rough {
+    struct glint_indirect *paths;
+    double share[GLINT_TILE_SAMPLES]; ///< share of the paths of each point that are reflected
+    glint_plan plan; ///< the frame's plan, with the numbers of samples and bounces of these paths
+    glint_tile_frame frame;
+};
+
+static void *create(const glint_plan *plan)
+{
+    struct glint_rough *rough = malloc(sizeof *rough);
+    if (!rough)
+        return NULL;
+    rough->paths = glint_indirect_create(plan);
+    if (rough->paths)
+        return rough;
+    free(rough);
+    return NULL;
+}
+
+static void destroy(void *memory)
+{
+    struct glint_rough *rough = memory;
+    if (rough)
+        glint_indirect_destroy(rough->paths);
+    free(rough);
+}
+
+/// Returns whether the surface of sample i reflects or refracts rays in many directions.
+static bool spreads(const glint_tile *seen, const glint_plan *plan, const glint_batch *from, uint32_t i)
+{
+    return glint_is_spreading(&plan->bouncing[seen->surface.material[i]]) && (!from || from->rays->depth[from->ray_of[i]] < plan->desc.max_depth);
+}
+
+/// Begins the paths of point i. Returns their number.
+static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, const glint_tile *seen,
+                            const glint_batch *from, uint32_t i, glint_pixel_block *block)
+{
+    static const double whole[3] = { 1, 1, 1 };
+    const glint_plan *plan = &rough->plan;
+    glint_bounce_material buffer;
+    double share[2];
+    glint_ray ray;
+    glint_rough_shares(from ? from : &rough->paths->batch, seen, &rough->frame, i, share);
+    const double all = share[0] + share[1];
+    if (!(all > 0))
+        return 0;
+    rough->share[i] = share[0] / all;
+    const bool both = share[0] > 0 && share[1] > 0;
+    const bool sharp = glint_tile_bouncing(seen, plan, i, &buffer)->alpha < SHARP;
+    const uint32_t paths = sharp && !both ? 1 : glint_indirect_paths_of(plan, from, i);
+    glint_batch_start_ray(from ? from : &rough->paths->batch, seen, &rough->frame, i, &ray);
+    if (!from)
+        ray.term = GLINT_TERM_MIRROR;
+    glint_indirect_begin_point(rough->paths, to, plan, i, paths, whole, &ray, block);
+    return paths;
+}
+
+/// Finds the points and their numbers of paths. Returns the largest number.
+static uint32_t find_points(struct glint_rough *rough, const glint_tile *to, const glint_tile *seen, const glint_batch *from)
+{
+    struct glint_indirect *paths = rough->paths;
+    glint_pixel_block block = { .known = false };
+    uint32_t most = 0;
+    paths->fewest = UINT32_MAX;
+    glint_rays_clear(&paths->first, seen->group_count);
+    for (uint32_t g = 0; g < seen->group_count; g++) {
+        for (unsigned bits = seen->at.hits[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
+            const uint32_t count = spreads(seen, &rough->plan, from, i) ? begin_point(rough, to, seen, from, i, &block) : 0;
+            most = count > most ? count : most;
+        }
+        paths->matt[g] = paths->first.active[g];
+    }
+    return most;
+}
+
+/// Draws the branch of path `number` of point i.
+static glint_branch draw_branch(const struct glint_rough *rough, uint32_t i, uint64_t number)
+{
+    double lot[2];
+    const double share = rough->share[i];
+    if (!(share > 0 && share < 1))
+        return share > 0 ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    glint_indirect_draw(rough->paths, i, number, 1, lot);
+    return lot[0] < share ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+}
+
+/// Makes the first ray of path `number` of point i. disk: a point of the unit disk.
+static void begin_path(struct glint_rough *rough, const glint_tile *seen, const glint_batch *from, uint32_t i,
+                       uint64_t number, const double disk[2])
+{
+    struct glint_indirect *paths = rough->paths;
+    const glint_batch *batch = from ? from : &paths->batch;
+    const glint_branch branch = draw_branch(rough, i, number);
+    glint_ray ray;
+    glint_batch_start_ray(batch, seen, &rough->frame, i, &ray);
+    if (!from)
+        ray.term = branch == GLINT_BRANCH_MIRRORED ? GLINT_TERM_MIRROR : GLINT_TERM_TRANSMISSION;
+    ray.point = i;
+    ray.least = paths->first.least[i];
+    const double chance = branch == GLINT_BRANCH_MIRRORED ? rough->share[i] : 1 - rough->share[i];
+    for (int c = 0; c < 3; c++)
+        ray.weight[c] = glint_weight(paths->weight[c][i] / chance);
+    glint_rough_leave(batch, seen, &rough->frame, i, disk, branch, &ray);
+    glint_rays_put(&paths->first, &rough->plan, i, &ray);
+}
+
+/// Makes the first rays of path number `path` of every point. Returns whether there are any.
+static bool begin_paths(struct glint_rough *rough, const glint_tile *seen, const glint_batch *from, uint32_t path, uint64_t number)
+{
+    struct glint_indirect *paths = rough->paths;
+    const void *const up[] = { paths->up[0], paths->up[1], paths->up[2] };
+    if (!glint_indirect_choose_points(paths, &rough->plan, path, number))
+        return false;
+    glint_indirect_scatter(&rough->frame, seen->group_count, up, paths->first.active, &paths->first_draws, path, paths->direction);
+    for (uint32_t g = 0; g < seen->group_count; g++)
+        for (unsigned bits = paths->first.active[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
+            double disk[2];
+            for (int c = 0; c < 2; c++)
+                disk[c] = glint_real_at(paths->direction[c], rough->plan.desc.precision, i);
+            begin_path(rough, seen, from, i, number, disk);
+        }
+    return true;
+}
+
+/// Ambient occlusion ends at the first surface: what rough surfaces show has the whole ambient light.
+static void begin_tile(struct glint_rough *rough, const glint_tile_frame *frame)
+{
+    rough->plan = *frame->plan;
+    rough->plan.derivatives = NULL; // this light is held constant
+    glint_plan_drop(&rough->plan, GLINT_STAGE_DERIVATIVE);
+    rough->plan.indirect.samples = frame->plan->rough_samples;
+    if (frame->plan->indirect.is_sky)
+        rough->plan.indirect.bounces = 0;
+    rough->plan.indirect.is_sky = false;
+    rough->frame = *frame;
+    rough->frame.plan = &rough->plan;
+    rough->paths->salt = SALT;
+    glint_indirect_begin(rough->paths, &rough->frame);
+}
+
+void glint_tile_rough(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from)
+{
+    struct glint_rough *rough = tile->own[GLINT_STAGE_ROUGH];
+    struct glint_indirect *paths = rough->paths;
+    begin_tile(rough, frame);
+    const uint32_t count = find_points(rough, tile, seen, from);
+    if (count == 0)
+        return;
+    glint_batch_begin(&paths->batch, tile, &rough->frame, GLINT_WALK_ROUGH);
+    paths->batch.ordered = from != NULL; // rays may share pixels
+    for (uint32_t path = 0; path < count && !glint_tile_cancelled(frame); path++) {
+        const uint64_t number = (uint64_t)tile->sample * rough->plan.indirect.samples + path;
+        paths->batch.tile.sample = (uint32_t)number;
+        if (begin_paths(rough, seen, from, path, number))
+            glint_indirect_follow(paths, &rough->frame, tile, number);
+    }
+    glint_batch_end(&paths->batch, tile);
+}
+
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    GLINT_KEY_ADD(key, plan->rough_samples);
+    return glint_bounce_key(plan, key);
+}
+
+static glint_status prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
+{
+    (void)from;
+    return plan->rough_samples ? glint_indirect_find_light_rows(plan, error) : GLINT_OK;
+}
+
+static bool called(const glint_plan *plan)
+{
+    return plan->rough_samples > 0 && plan->desc.max_depth > 0 && plan->geometry->table.prim_count > 0;
+}
+
+static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any)
+{
+    return any && glint_tile_shows(tile, frame, glint_is_spreading);
+}
+
+/// Adds the light that rough surfaces reflect and refract.
+static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (!walk->any || tile->direct || !glint_tile_shows(tile, frame, glint_is_spreading))
+        return;
+    glint_tile_need_points(tile, frame, walk);
+    glint_tile_rough(tile, frame, tile, NULL);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_ROUGH, false);
+}
+
+const glint_stage glint_stage_rough = {
+    .name = "rough",
+    .doc = "rays that rough surfaces reflect and refract, and the light of these rays",
+    .prepare = prepare,
+    .called = called,
+    .own = own_key,
+    .reads = GLINT_READS_OWN(ROUGH) | GLINT_READS_OWN(INDIRECT),
+    .walks = true,
+    .sums = true,
+    .normals = true,
+    .remote = true,
+    .adds = adds,
+    .step[GLINT_AT_REST] = add,
+    .create = create,
+    .destroy = destroy,
+    .sized = true,
+};

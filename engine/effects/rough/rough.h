@@ -1,0 +1,19 @@
+/// Rays that a rough surface reflects and refracts. Internal.
+#ifndef GLINT_ROUGH_H
+#define GLINT_ROUGH_H
+
+#include "engine/tile/batch.h"
+
+/// Estimates the shares of a ray's light that the rough surface of sample i reflects and refracts, to choose between
+/// them. Both are above 0 where light may go on. share: by GLINT_BRANCH_MIRRORED and GLINT_BRANCH_REFRACTED.
+void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                        double share[2]);
+
+/// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
+/// direction, side, depth, media; multiplies the weight. disk: a point of the unit disk, where equal areas are equally
+/// likely. The weight is 0 where the facet that was drawn sends the ray through the surface, or where another facet
+/// is in its way.
+void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                       const double disk[2], glint_branch branch, glint_ray *ray);
+
+#endif
