@@ -342,7 +342,7 @@ local function stages_of(change)
   local file <close> = assert(io.open(path, "w"))
   file:write([[
     local glint = require "glint"
-    local metal = glint.material { model = "cook_torrance", f0 = { 0.9, 0.6, 0.3 }, diffuse = 0 }
+    local metal = glint.material { model = "cook_torrance", f0 = { 0.9, 0.6, 0.3 }, diffuse = 0, mirror = 0 }
     local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
       glint.point_light { position = { 4, 5, 6 } }, glint.sphere { center = { 0, 0, 0 }, radius = 2, material = metal } }
     return glint.animation { scene = scene, frames = 4, width = 64, height = 48, frame = function(t, n) ]] .. change .. " end }")

@@ -193,7 +193,7 @@ function tests.materials()
   material "newmtl a\nKd 1 1 1 # white\nKe 0 0 0\nKe 2 0 0\nKa 1 1 1\nnorm n.png\nnorm m.png\nmap_Pr r.png\nPs 0\nNi 1.45\nTf 1 1 1\nwhatever\n"
   warns(mtl .. "Ke, norm, map_Pr, whatever are ignored: not a field of a material", path)
   m = material "newmtl a\nKd 1 0.5 0\nPr 0.25\nPm 1\nKs 0.5 0.5 0.5\nillum 3\n"
-  check(m.model == "cook_torrance" and m.roughness == 0.25 and is(m.f0, 1, 0.5, 0) and is(m.diffuse, 0, 0, 0) and is(m.mirror, 0, 0, 0), "a metal")
+  check(m.model == "cook_torrance" and m.roughness == 0.25 and is(m.f0, 1, 0.5, 0) and is(m.diffuse, 0, 0, 0) and is(m.mirror, 1, 1, 1), "a metal")
   m = material "newmtl a\nKd 1 0.5 0\nPr 0.75\n"
   check(m.roughness == 0.75 and math.abs(m.f0[1] - 0.04) < 1e-15 and is(m.diffuse, 1, 0.5, 0) and is(m.specular, 1, 1, 1), "a rough plastic")
   for illum = 0, 10 do

@@ -54,6 +54,12 @@ static bool is_any_painted(const glint_plan *plan)
     return false;
 }
 
+/// Returns whether the rays that a surface reflects or refracts change.
+static bool sends_on_differently(const glint_derivative_bounce *slope)
+{
+    return glint_any_slope(slope->mirror) || glint_any_slope(slope->transmission) || slope->ior != 0;
+}
+
 /// Returns the name of an effect without derivatives beyond the first surface, or NULL.
 static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan_derivative *d)
 {
@@ -64,6 +70,9 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
             return "material.mirror: 0 has no derivative, because no ray is reflected; use a value above 0";
         if (glint_any_slope(d->bounces[i].transmission) && !glint_material_transmits(desc))
             return "material.transmission: 0 has no derivative, because no ray is transmitted; use a value above 0";
+        if (plan->bouncing && plan->bouncing[i].rough && sends_on_differently(&d->bounces[i]))
+            return "material.roughness: rays that a rough surface reflects or refracts have no derivative; make it "
+                   "smooth";
         if (plan->tints && d->programs[i].of[GLINT_FIELD_TRANSMISSION])
             return "material.transmission: light through a patterned material has no derivative by the pattern; set "
                    "shadows = false for the lights";

@@ -375,10 +375,17 @@ static void collect(const struct glint_indirect *indirect, const glint_tile_fram
         glint_indirect_collect_missed(indirect, frame, missed, frame->plan->background, to);
 }
 
-static void count_rays(const glint_batch *batch, glint_tile *to)
+/// Counts the rays: those of rough surfaces by the term of their light.
+static void count_rays(const struct glint_indirect *indirect, glint_tile *to)
 {
-    for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        to->counts.indirect += (unsigned)__builtin_popcount(batch->rays->active[g]);
+    const glint_rays *rays = indirect->batch.rays;
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        for (unsigned bits = rays->active[g]; bits; bits &= bits - 1) {
+            const uint16_t term = rays->term[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
+            to->counts.mirror += indirect->salt && term == GLINT_TERM_MIRROR;
+            to->counts.refraction += indirect->salt && term == GLINT_TERM_TRANSMISSION;
+            to->counts.indirect += !indirect->salt || term == GLINT_TERM_INDIRECT;
+        }
 }
 
 /// Lights the hits. The light of faces and vertices is cached for all readers, so it uses every sample of the lights.
@@ -399,7 +406,7 @@ void glint_indirect_follow(struct glint_indirect *indirect, const glint_tile_fra
     bool any = true;
     batch->rays = &indirect->first;
     for (uint32_t step = 0; any && !glint_tile_cancelled(frame); step++) {
-        count_rays(batch, to);
+        count_rays(indirect, to);
         take_lights(indirect, frame->plan, number, step);
         any = glint_batch_cast(batch, &indirect->frame);
         if (frame->plan->indirect.is_sky) {

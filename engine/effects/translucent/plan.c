@@ -51,7 +51,7 @@ static glint_status weigh_all(glint_translucent *out, const glint_material_desc 
     d->has_specular = d->has_mirror = true;
     if (!status)
         status = weigh(out, share, d->specular, &programs->specular, error);
-    if (!status)
+    if (!status && !glint_material_has_facets(d)) // they multiply `mirror` by `specular`
         status = weigh(out, share, d->mirror, &programs->mirror, error);
     if (!status)
         status = weigh(out, share, d->transmission, &programs->transmission, error);
