@@ -65,7 +65,8 @@ local MATERIALS = {
   glossy = function(color) return { diffuse = color, specular = 0.4, shininess = 80 } end,
   rough = function(color) return { diffuse = color, model = require "glint.models".oren_nayar { roughness = 0.5 } } end,
   gold = function()
-    return { diffuse = 0.05, specular = 1, model = "cook_torrance", roughness = 0.35, f0 = { 1, 0.77, 0.34 } }
+    return { diffuse = 0.05, specular = 1, model = "cook_torrance", roughness = 0.35, f0 = { 1, 0.77, 0.34 },
+      mirror = 0 } -- photometric stereo expects the lamps alone
   end,
 }
 

@@ -27,6 +27,7 @@ for i, roughness in ipairs(ROUGHNESS) do
   local alpha = roughness * roughness
   local facets = glint.material {
     model = "cook_torrance", distribution = P.distribution, roughness = roughness, f0 = P.f0, diffuse = tint,
+    mirror = 0, -- the lamps alone, as with Phong
   }
   local power = glint.material {
     model = "phong", normalized = true, shininess = math.max(2 / alpha ^ 2 - 2, 0) / 4, specular = P.f0, diffuse = tint,
