@@ -21,8 +21,8 @@ return glint.animation {
     glint.directional_light { direction = { 0, -glint.sin(angle), -glint.cos(angle) } },
     ball(-1.5, glint.material { diffuse = 0, specular = f0, normalized = true,
       shininess = math.max(0, 2 / P.roughness ^ 4 - 2) / 4 }),
-    ball(1.5, glint.material { model = "cook_torrance", diffuse = 0, specular = 1, f0 = f0, roughness = P.roughness, mirror = 0,
-      distribution = P.distribution }),
+    ball(1.5, glint.material { model = "cook_torrance", diffuse = 0, specular = 1, f0 = f0, mirror = 0,
+      roughness = P.roughness, distribution = P.distribution }),
   },
   frames = 1, width = 640, height = 320, samples = 4,
 }
