@@ -77,6 +77,9 @@ LEFT_OUT(outline, "outline", "outline", "outlines", plan->desc.passes >> GLINT_P
 #ifdef GLINT_LACKS_raster
 LEFT_OUT(raster, "raster", "visibility", "scan conversion", plan->desc.visibility == GLINT_VISIBILITY_SCAN)
 #endif
+#ifdef GLINT_LACKS_rough
+LEFT_OUT(rough, "rough", "material.roughness", "rays of rough surfaces", plan->rough_samples > 0)
+#endif
 #ifdef GLINT_LACKS_transparent_shadow
 LEFT_OUT(tint, "transparent_shadow", "material", "light through transparent objects", has_media(plan) && plan->shadow_count > 0)
 #endif
