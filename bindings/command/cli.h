@@ -196,8 +196,8 @@ void cli_print_warning(cli_output *output, const char *message);
 
 glintL_reporter cli_reporter(cli_output *output);
 void cli_print_rays(FILE *out, const glint_ray_counts *rays); ///< prints "rays":{...}
-/// Reports the error as an event and for people.
-void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
+/// Reports the error as an event and for people. Returns the exit code.
+int cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
 void cli_warning_event(cli_output *output, const char *message); ///< only with --json
 /// Warns when many pixels of the run are above white.
 void cli_warn_clipped(glintL_run *run);
@@ -240,7 +240,6 @@ typedef struct cli_script {
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run);
 /// Runs the selected frames of the jobs that a script returned in GLINTL_MODE_WATCH. May be called repeatedly.
 bool cli_run_jobs(cli_script *script, glintL_run *run);
-const char *cli_base_name(const char *path);
 void cli_close_script(cli_script *script);
 /// Sets the state that a signal stops; NULL: none. signals.c
 void cli_set_state(lua_State *L);

@@ -62,10 +62,8 @@ int cli_compare(const cli_options *options, cli_output *output)
     glint_compare_desc desc = { .fail = 1e-6, .warn = 1e-6 };
     glint_compare_result result = { 0 };
     glint_error error = { .message = "" };
-    if (options->argument_count != 2) {
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "compare: two files expected");
-        return GLINTL_EXIT_USAGE;
-    }
+    if (options->argument_count != 2)
+        return cli_report_error(output, 0, GLINTL_EXIT_USAGE, "compare: two files expected");
     desc.fail = options->fail >= 0 ? options->fail : desc.fail;
     desc.warn = options->warn >= 0 ? options->warn : desc.warn;
     char **files = options->arguments;

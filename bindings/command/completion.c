@@ -245,6 +245,5 @@ int cli_completion(const cli_options *options, cli_output *output)
             }
         snprintf(message, sizeof message, "completion: bash, zsh or fish expected, got '%.100s'", options->script);
     }
-    cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
-    return GLINTL_EXIT_USAGE;
+    return cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
 }

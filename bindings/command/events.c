@@ -219,7 +219,7 @@ static void report_making(void *context, const char *path, size_t done, size_t c
 {
     cli_output *output = context;
     if (output->progress)
-        cli_progress_film(output->progress, cli_base_name(path), done, count);
+        cli_progress_film(output->progress, glintL_base_name(path), done, count);
 }
 
 glintL_reporter cli_reporter(cli_output *output)
@@ -235,19 +235,20 @@ glintL_reporter cli_reporter(cli_output *output)
 
 // ---- The end ----
 
-void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message)
+int cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message)
 {
     print_kept(output);
     cli_print_error(output, message);
     output->failure_printed = output->failure_printed || output->data_failed;
     if (!output->json || output->data_failed)
-        return;
+        return exit_code;
     fputs("{\"event\":\"error\"", output->data);
     if (index > 0)
         fprintf(output->data, ",\"index\":%" PRId64, index);
     glintL_json(output->data, ",\"message\":%s", message);
     fprintf(output->data, ",\"exit\":%d}", exit_code);
     cli_end_line(output);
+    return exit_code;
 }
 
 void cli_warn_clipped(glintL_run *run)

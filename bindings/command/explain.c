@@ -179,10 +179,8 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
                         options->frame);
     if (run->interrupted)
         return GLINTL_EXIT_FAILED;
-    if (run->exit_code) {
-        cli_report_error(output, run->failed_index, run->exit_code, run->message);
-        return run->exit_code;
-    }
+    if (run->exit_code)
+        return cli_report_error(output, run->failed_index, run->exit_code, run->message);
     if (options->json)
         print_json(output->data, run, options->programs);
     else

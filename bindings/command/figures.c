@@ -10,8 +10,7 @@ static int refuse(cli_output *output, int code, const char *command, const char 
 {
     char full[GLINTL_MESSAGE_SIZE + 32];
     snprintf(full, sizeof full, "%s: %s", command, message);
-    cli_report_error(output, 0, code, full);
-    return code;
+    return cli_report_error(output, 0, code, full);
 }
 
 static double dpi_of(const cli_options *options)

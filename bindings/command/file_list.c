@@ -102,7 +102,7 @@ static int64_t last_request(const glintL_selection *selection)
 // Returns the number at the end of a file's name, before its extension; -1: none.
 static int64_t number_of(const char *path)
 {
-    const char *name = cli_base_name(path), *ending = strrchr(name, '.');
+    const char *name = glintL_base_name(path), *ending = strrchr(name, '.');
     const char *end = ending ? ending : name + strlen(name), *at = end;
     while (at > name && at[-1] >= '0' && at[-1] <= '9')
         at--;

@@ -62,13 +62,11 @@ static void finish_early(void)
 static int run_scripted(cli_options *options, cli_output *output, int *signal_number)
 {
     glintL_run *run = glintL_run_create();
-    if (!run) {
-        cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
-        return GLINTL_EXIT_FAILED;
-    }
+    if (!run)
+        return cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
     run->is_command = true;
     run->times_stages = options->json && options->command == CLI_RENDER;
-    snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
+    snprintf(run->script, sizeof run->script, "%s", options->script ? glintL_base_name(options->script) : "");
     run->request = options->request; // now owns the memory that it points to
     options->request.sets = NULL;
     options->request.folder = NULL;
@@ -105,12 +103,11 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
         return cli_new(options, output);
     if (options->command == CLI_COMPLETION)
         return cli_completion(options, output);
-    if (!options->script && options->command != CLI_ASSEMBLE && options->command != CLI_RELIGHT) {
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE,
-                         options->command == CLI_REPRODUCE ? "reproduce: a finished picture and its script expected"
-                                                           : "a script expected; glint --help lists the commands");
-        return GLINTL_EXIT_USAGE;
-    }
+    if (!options->script && options->command != CLI_ASSEMBLE && options->command != CLI_RELIGHT)
+        return cli_report_error(output, 0, GLINTL_EXIT_USAGE,
+                                options->command == CLI_REPRODUCE
+                                    ? "reproduce: a finished picture and its script expected"
+                                    : "a script expected; glint --help lists the commands");
     int code;
     if (options->untrusted_s > 0 && !cli_untrusted_begin(options, output, &code, signal_number))
         return code;

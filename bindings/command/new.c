@@ -61,8 +61,7 @@ static int refuse(cli_output *output, int code, const char *path, const char *wh
 {
     char message[GLINTL_MESSAGE_SIZE];
     snprintf(message, sizeof message, "new: %.400s%s%s", path, *path ? ": " : "", why);
-    cli_report_error(output, 0, code, message);
-    return code;
+    return cli_report_error(output, 0, code, message);
 }
 
 // Closes a new file, and removes it if it is incomplete. Returns 0 or an errno.
@@ -79,7 +78,7 @@ static int finish(FILE *file, const char *path)
 // Writes the script unless the file exists. Returns 0 or an errno.
 static int write_script(const char *path)
 {
-    const char *name = cli_base_name(path);
+    const char *name = glintL_base_name(path);
     FILE *file = fopen(path, "wx");
     if (!file)
         return errno;
@@ -137,12 +136,12 @@ int cli_new(const cli_options *options, cli_output *output)
         return refuse(output, GLINTL_EXIT_USAGE, "", "one name expected");
     const char *name = options->arguments[0];
     size_t length = strlen(name);
-    if (length == 0 || name[length - 1] == '/' || length > GLINTL_PATH_SIZE - 8 || *cli_base_name(name) == '.')
+    if (length == 0 || name[length - 1] == '/' || length > GLINTL_PATH_SIZE - 8 || *glintL_base_name(name) == '.')
         return refuse(output, GLINTL_EXIT_USAGE, name, "expected the name of a folder or of a .lua script");
     snprintf(path, sizeof path, "%s", name);
     int code = 0;
     if (!ends_in_lua(name)) {
-        snprintf(path, sizeof path, "%s/%s.lua", name, cli_base_name(name));
+        snprintf(path, sizeof path, "%s/%s.lua", name, glintL_base_name(name));
         snprintf(settings, sizeof settings, "%s/.luarc.json", name);
         code = mkdir(name, 0777) == 0 || errno == EEXIST ? 0 : errno;
     }

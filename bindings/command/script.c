@@ -16,12 +16,6 @@ typedef struct task { // argument of the protected function
     glintL_run *run;
 } task;
 
-const char *cli_base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 static void set_arguments(lua_State *L, const cli_options *options)
 {
     lua_createtable(L, options->argument_count, 1);
@@ -68,7 +62,7 @@ static void add_own_modules(lua_State *L, const char *program)
 // Puts the script's folder and its lib/ first in the module path.
 static void set_path(lua_State *L, const cli_options *options)
 {
-    const char *script = options->script, *base = cli_base_name(script);
+    const char *script = options->script, *base = glintL_base_name(script);
     lua_getglobal(L, "package");
     add_own_modules(L, options->program);
     lua_pushlstring(L, script, (size_t)(base - script));
@@ -102,13 +96,13 @@ static int refuse_results(lua_State *L, int count)
 static int refuse_silence(lua_State *L, const cli_options *options)
 {
     if (options->dialect)
-        lua_pushfstring(L, "%s rendered nothing; expected it to call %s.render", cli_base_name(options->script),
+        lua_pushfstring(L, "%s rendered nothing; expected it to call %s.render", glintL_base_name(options->script),
                         options->dialect);
     else
         lua_pushfstring(L,
                         "%s returned nothing and rendered nothing; expected it to return an animation, a sweep, a "
                         "scene, a chart or a list of them, or to call scene:render",
-                        cli_base_name(options->script));
+                        glintL_base_name(options->script));
     return lua_error(L);
 }
 

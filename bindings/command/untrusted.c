@@ -150,8 +150,7 @@ static int judge(int status, const watched *child, const cli_options *options, c
         return WEXITSTATUS(status);
     if (*signal_number)
         return 128 + *signal_number;
-    cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
-    return GLINTL_EXIT_USAGE;
+    return cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
 }
 
 // Waits for the child, in the parent. Removes the incomplete files of a killed child.

@@ -90,8 +90,7 @@ static int refuse(cli_output *output, const char *format, const char *word, cons
 {
     char message[GLINTL_MESSAGE_SIZE];
     snprintf(message, sizeof message, format, word, near);
-    cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
-    return GLINTL_EXIT_USAGE;
+    return cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
 }
 
 int cli_help(const cli_options *options, cli_output *output)

@@ -52,10 +52,8 @@ int cli_version(const cli_options *options, cli_output *output)
 #else
     fputs("--untrusted: no, this build has no libseccomp\n", out);
 #endif
-    if (!print_kernels(out)) {
-        cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
-        return GLINTL_EXIT_FAILED;
-    }
+    if (!print_kernels(out))
+        return cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
     fprintf(
         out,
         "limits: %d pixels a side, 2147483647 a frame, 65536 samples a pixel, %d frames a job, 2^30 spheres a shape\n",

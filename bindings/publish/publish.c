@@ -207,7 +207,7 @@ static void push_page(lua_State *L, const void *context)
     glintL_copy_value(p->script.state, -1, L);
     lua_setfield(L, -2, "params");
     glintL_set_text(L, "script", p->run->script);
-    lua_pushlstring(L, p->options->script, (size_t)(cli_base_name(p->options->script) - p->options->script));
+    lua_pushlstring(L, p->options->script, (size_t)(glintL_base_name(p->options->script) - p->options->script));
     lua_setfield(L, -2, "folder");
     push_file(L, p->options->script);
     lua_setfield(L, -2, "source");
@@ -279,10 +279,8 @@ int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
     making page = { .of = &p, .what = "publish" };
     glint_error error;
     const char *ending = options->output ? strrchr(options->output, '.') : NULL;
-    if (!ending || strcmp(ending, ".html") != 0) {
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: expected -o PAGE.html");
-        return GLINTL_EXIT_USAGE;
-    }
+    if (!ending || strcmp(ending, ".html") != 0)
+        return cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: expected -o PAGE.html");
     if (make(&p, &page) && glintL_write_text(options->output, page.text.text, page.text.size, &error) != GLINT_OK)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s", error.message);
     glintL_drop_text(&page.text);
@@ -307,7 +305,7 @@ char *cli_live(const cli_options *options, const glintL_request *request, int *c
     if (options->live_script)
         own.script = options->live_script;
     p.run->is_command = true;
-    snprintf(p.run->script, sizeof p.run->script, "%s", cli_base_name(own.script));
+    snprintf(p.run->script, sizeof p.run->script, "%s", glintL_base_name(own.script));
     p.run->request.sets = request->sets;
     p.run->request.set_count = request->set_count;
     if (make(&p, &figure))

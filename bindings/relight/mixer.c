@@ -62,7 +62,7 @@ static void print_title(FILE *out, const char *text)
 static void print_value(FILE *out, const char *name, const cli_options *options, const relight_mix *mix,
                         const char *file, const glint_image *image)
 {
-    const char *title = options->title ? options->title : cli_base_name(file);
+    const char *title = options->title ? options->title : glintL_base_name(file);
     if (strncmp(name, "VERSION", 7) == 0)
         fputs(GLINT_VERSION, out);
     else if (strncmp(name, "TITLE", 5) == 0)

@@ -35,7 +35,7 @@ static placeholder read_placeholder(const char *text)
     return found;
 }
 
-static const char *base_name(const char *path)
+const char *glintL_base_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
@@ -45,7 +45,7 @@ static const char *base_name(const char *path)
 // because folders have names such as "shot#3".
 static bool is_placeholder(const char *pattern, const char *at)
 {
-    return *at == '%' || (*at == '#' && at >= base_name(pattern));
+    return *at == '%' || (*at == '#' && at >= glintL_base_name(pattern));
 }
 
 // Returns whether the path is an existing pipe or device. It is written directly under its own name, and no other file

@@ -112,10 +112,8 @@ static int collect_run(lua_State *L)
 static void read_script_name(lua_State *L, glintL_run *run)
 {
     if (lua_getglobal(L, "arg") == LUA_TTABLE) {
-        if (lua_rawgeti(L, -1, 0) == LUA_TSTRING) {
-            const char *path = lua_tostring(L, -1), *slash = strrchr(path, '/');
-            snprintf(run->script, sizeof run->script, "%s", slash ? slash + 1 : path);
-        }
+        if (lua_rawgeti(L, -1, 0) == LUA_TSTRING)
+            snprintf(run->script, sizeof run->script, "%s", glintL_base_name(lua_tostring(L, -1)));
         lua_pop(L, 1);
     }
     lua_pop(L, 1);

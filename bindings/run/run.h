@@ -100,6 +100,8 @@ void glintL_spell_colormap(int colormap, const double range[2], char out[64]);
 
 // ---- names.c ----
 
+const char *glintL_base_name(const char *path); ///< returns the part of a path after its last '/'
+
 typedef enum glintL_film_kind {
     GLINTL_FILM_NONE, ///< a picture
     GLINTL_FILM_APNG,

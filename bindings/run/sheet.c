@@ -43,12 +43,6 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
 
 // ---- Labels ----
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 static const char *frame_of(const glintL_axes *axes, size_t cell)
 {
     const char *frame = glint_picture_text(axes->pictures[cell], "glint:frame");
@@ -88,7 +82,7 @@ static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, si
     if (axes->count == 0 && frames_differ(axes))
         snprintf(out, LABEL_SIZE, "frame %s", frame_of(axes, cell));
     else if (axes->count == 0)
-        snprintf(out, LABEL_SIZE, "%s", base_name(sheet->files[cell]));
+        snprintf(out, LABEL_SIZE, "%s", glintL_base_name(sheet->files[cell]));
 }
 
 // Returns the value for {name}; NULL: unknown name.
@@ -103,7 +97,7 @@ static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes
         return value;
     }
     if (length == 4 && memcmp(name, "file", 4) == 0)
-        return base_name(sheet->files[cell]);
+        return glintL_base_name(sheet->files[cell]);
     return length == 5 && memcmp(name, "frame", 5) == 0 ? frame_of(axes, cell) : NULL;
 }
 

@@ -536,8 +536,7 @@ int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
     const bool is_folder = stat(options->script, &info) == 0 && S_ISDIR(info.st_mode);
     if (is_folder || access(options->script, R_OK) != 0) {
         snprintf(message, sizeof message, "%.900s: %s", options->script, strerror(is_folder ? EISDIR : errno));
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
-        return GLINTL_EXIT_USAGE;
+        return cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
     }
     bool good = open_watcher(&w, message);
     if (good) {

@@ -268,7 +268,7 @@ EMSCRIPTEN_KEEPALIVE bool web_open(const char *path, double seconds)
         return false;
     job.seconds = seconds;
     job.options = (cli_options) { .command = CLI_WATCH, .json = true, .script = script, .untrusted_s = seconds };
-    snprintf(job.run->script, sizeof job.run->script, "%s", cli_base_name(script));
+    snprintf(job.run->script, sizeof job.run->script, "%s", glintL_base_name(script));
     job.run->is_command = true;
     job.run->request.sets = job.sets;
     job.run->request.force = true;
