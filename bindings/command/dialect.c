@@ -3,69 +3,13 @@
 
 #include "bindings/command/cli.h"
 
-static const unsigned char GR[] = {
-#include "scripts/lib/gr.lua.h"
-};
-static const unsigned char CHECK[] = {
-#include "scripts/lib/gr/check.lua.h"
-};
-static const unsigned char FILES[] = {
-#include "scripts/lib/gr/files.lua.h"
-};
-static const unsigned char GENERATION[] = {
-#include "scripts/lib/gr/generation.lua.h"
-};
-static const unsigned char LAMP[] = {
-#include "scripts/lib/gr/lamp.lua.h"
-};
-static const unsigned char LAYERS[] = {
-#include "scripts/lib/gr/layers.lua.h"
-};
-static const unsigned char LUA5[] = {
-#include "scripts/lib/gr/lua5.lua.h"
-};
-static const unsigned char MESH[] = {
-#include "scripts/lib/gr/mesh.lua.h"
-};
-static const unsigned char NORMAL_MAP[] = {
-#include "scripts/lib/gr/normal_map.lua.h"
-};
-static const unsigned char OBJ[] = {
-#include "scripts/lib/gr/obj.lua.h"
-};
-static const unsigned char OPERATIONS[] = {
-#include "scripts/lib/gr/operations.lua.h"
-};
-static const unsigned char OPTIONS[] = {
-#include "scripts/lib/gr/options.lua.h"
-};
-static const unsigned char PICTURE[] = {
-#include "scripts/lib/gr/picture.lua.h"
-};
-static const unsigned char SURFACE[] = {
-#include "scripts/lib/gr/surface.lua.h"
-};
-
-static const struct carried {
-    const char *name, *source;
+typedef struct module { // a carried Lua module
+    const char *name;
     const unsigned char *text;
     size_t size;
-} modules[] = {
-    { "gr", "@gr.lua", GR, sizeof GR },
-    { "gr.check", "@gr/check.lua", CHECK, sizeof CHECK },
-    { "gr.files", "@gr/files.lua", FILES, sizeof FILES },
-    { "gr.generation", "@gr/generation.lua", GENERATION, sizeof GENERATION },
-    { "gr.lamp", "@gr/lamp.lua", LAMP, sizeof LAMP },
-    { "gr.layers", "@gr/layers.lua", LAYERS, sizeof LAYERS },
-    { "gr.lua5", "@gr/lua5.lua", LUA5, sizeof LUA5 },
-    { "gr.mesh", "@gr/mesh.lua", MESH, sizeof MESH },
-    { "gr.normal_map", "@gr/normal_map.lua", NORMAL_MAP, sizeof NORMAL_MAP },
-    { "gr.obj", "@gr/obj.lua", OBJ, sizeof OBJ },
-    { "gr.operations", "@gr/operations.lua", OPERATIONS, sizeof OPERATIONS },
-    { "gr.options", "@gr/options.lua", OPTIONS, sizeof OPTIONS },
-    { "gr.picture", "@gr/picture.lua", PICTURE, sizeof PICTURE },
-    { "gr.surface", "@gr/surface.lua", SURFACE, sizeof SURFACE },
-};
+} module;
+
+#include "bindings/command/dialect.h" // LIBRARY
 
 typedef struct code_buffer {
     luaL_Buffer buffer;
@@ -97,8 +41,8 @@ static void strip(lua_State *L)
 
 static int load_module(lua_State *L)
 {
-    const struct carried *module = lua_touserdata(L, lua_upvalueindex(1));
-    if (luaL_loadbufferx(L, (const char *)module->text, module->size, module->source, "t") != LUA_OK)
+    const module *which = lua_touserdata(L, lua_upvalueindex(1));
+    if (luaL_loadbufferx(L, (const char *)which->text, which->size, which->name, "t") != LUA_OK)
         return lua_error(L);
     strip(L);
     lua_pushvalue(L, 1);
@@ -109,10 +53,10 @@ static int load_module(lua_State *L)
 void cli_carry_dialect(lua_State *L)
 {
     luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
-    for (size_t i = 0; i < sizeof modules / sizeof *modules; i++) {
-        lua_pushlightuserdata(L, (void *)&modules[i]);
+    for (size_t i = 0; i < sizeof LIBRARY / sizeof *LIBRARY; i++) {
+        lua_pushlightuserdata(L, (void *)&LIBRARY[i]);
         lua_pushcclosure(L, load_module, 1);
-        lua_setfield(L, -2, modules[i].name);
+        lua_setfield(L, -2, LIBRARY[i].name);
     }
     lua_pop(L, 1);
 }
