@@ -1,6 +1,8 @@
 /// Stands in for the effects that a build leaves out (make WITHOUT="indirect bounce"): declarations that no frame
 /// calls for and that refuse scenes which need the effect, and the effects' public functions.
 #include "engine/base/status.h"
+#include "engine/effects/environment/sky.h"
+#include "engine/effects/prepare.h"
 #include "engine/plan/light_groups.h"
 #include "engine/scene/objects.h"
 
@@ -60,6 +62,23 @@ LEFT_OUT(derivative, "derivative", "derivatives", "derivatives", from->desc->der
 #endif
 #ifdef GLINT_LACKS_environment
 LEFT_OUT(environment, "environment", "scene.background", "pattern or texture as the background", from->scene->desc.background_program)
+
+glint_status glint_sky_find(glint_plan *plan, glint_error *error)
+{
+    (void)plan, (void)error;
+    return GLINT_OK;
+}
+
+void glint_sky_draw(const glint_sky *sky, const double u[2], double direction[3])
+{
+    (void)sky, (void)u, (void)direction;
+}
+
+double glint_sky_density(const glint_sky *sky, const double direction[3])
+{
+    (void)sky, (void)direction;
+    return 0;
+}
 #endif
 #ifdef GLINT_LACKS_indirect
 LEFT_OUT(indirect, "indirect", "scene", "indirect light and ambient occlusion", glint_plan_has_indirect(&from->scene->desc))

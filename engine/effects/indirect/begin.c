@@ -122,12 +122,15 @@ void glint_indirect_scatter(const glint_tile_frame *frame, uint32_t group_count,
     frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
 }
 
-/// Restores the weights of the first rays, except those that a bumped normal sends into the surface.
+/// Restores the weights of the first rays, except those that a bumped normal sends into the surface; under a sky,
+/// multiplies them by the weights of their directions.
 static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen)
 {
     glint_rays *first = &indirect->first;
-    if (frame->plan->absorbs || glint_plan_bumps(frame->plan))
+    if (frame->plan->absorbs || glint_plan_bumps(frame->plan) || frame->plan->sky)
         memcpy(first->weight, indirect->weight, sizeof first->weight);
+    if (frame->plan->sky)
+        glint_indirect_weigh_sky(first, first->active, indirect->share);
     if (!glint_plan_bumps(frame->plan))
         return;
     for (uint32_t i = 0; i < first->group_count * GLINT_GROUP; i++)
@@ -191,7 +194,10 @@ bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_til
     const void *const normal[] = { seen->surface.normal[0], seen->surface.normal[1], seen->surface.normal[2] };
     if (!glint_indirect_choose_points(indirect, frame->plan, path, number))
         return false;
-    glint_indirect_scatter(frame, seen->group_count, normal, first->active, &indirect->first_draws, path, first->direction);
+    if (frame->plan->sky)
+        glint_indirect_draw_sky(seen, frame->plan, first->active, &indirect->first_draws, path, first->direction, indirect->share);
+    else
+        glint_indirect_scatter(frame, seen->group_count, normal, first->active, &indirect->first_draws, path, first->direction);
     weigh_first(indirect, frame, seen);
     return true;
 }

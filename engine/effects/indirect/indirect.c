@@ -211,6 +211,23 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
     }
 }
 
+/// Continues the paths that matt surfaces scatter.
+static void scatter(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_rays *next)
+{
+    const glint_tile *tile = &indirect->batch.tile;
+    const void *const normal[] = { tile->surface.normal[0], tile->surface.normal[1], tile->surface.normal[2] };
+    const draws *drawn = &indirect->next_draws;
+    if (frame->plan->sky)
+        glint_indirect_draw_sky(tile, frame->plan, indirect->scattered, drawn, 0, indirect->direction, indirect->share);
+    else
+        glint_indirect_scatter(frame, tile->group_count, normal, indirect->scattered, drawn, 0, indirect->direction);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned bits = indirect->scattered[g]; bits; bits &= bits - 1)
+            leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), next);
+    if (frame->plan->sky)
+        glint_indirect_weigh_sky(next, indirect->scattered, indirect->share);
+}
+
 /// Notes the point of the sequence for the next direction of a path.
 static void draw_next(struct glint_indirect *indirect, const glint_ray *next, uint64_t number, uint32_t i)
 {
@@ -274,13 +291,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     }
     if (!any)
         return false;
-    const void *const normal[] = { indirect->batch.tile.surface.normal[0], indirect->batch.tile.surface.normal[1],
-                             indirect->batch.tile.surface.normal[2] };
-    glint_indirect_scatter(frame, tile->group_count, normal, indirect->scattered, &indirect->next_draws, 0,
-                           indirect->direction);
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned bits = indirect->scattered[g]; bits; bits &= bits - 1)
-            leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), rays);
+    scatter(indirect, frame, rays);
     if (frame->plan->rough_samples)
         spread(indirect, frame, rays);
     batch->rays = rays;

@@ -32,6 +32,7 @@ struct glint_indirect {
     glint_rays first; ///< the first ray of each point, by number; equal for all paths except for its direction
     double weight[3][GLINT_TILE_SAMPLES]; ///< weights of these rays before anything is subtracted
     glint_rays next[2]; ///< rays of odd and even steps
+    double share[GLINT_TILE_SAMPLES]; ///< with plan->sky: weights of scattered rays by their densities
     uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples whose path is scattered
     uint16_t spread[GLINT_TILE_GROUPS]; ///< samples whose path a rough surface reflects or refracts
     uint8_t branch[GLINT_TILE_SAMPLES]; ///< which of the two, a glint_branch
@@ -106,6 +107,12 @@ bool glint_indirect_choose_points(struct glint_indirect *indirect, const glint_p
 void glint_indirect_scatter(const glint_tile_frame *frame, uint32_t group_count, const void *const normal[3],
                             const uint16_t *wanted, const draws *drawn, uint32_t further,
                             double (*direction)[GLINT_TILE_SAMPLES]);
+/// Draws directions from samples of `tile` by the sky or the cosine, and writes the weights of their rays. The
+/// other arguments are as for glint_indirect_scatter.
+void glint_indirect_draw_sky(const glint_tile *tile, const glint_plan *plan, const uint16_t *wanted, const draws *drawn,
+                             uint32_t further, double (*direction)[GLINT_TILE_SAMPLES], double *share);
+/// Multiplies the rays in `wanted` by these weights. Drops those of weight 0.
+void glint_indirect_weigh_sky(glint_rays *rays, const uint16_t *wanted, const double *share);
 /// Makes the first rays of path number `path` of every point. Returns whether there are any.
 bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
                                 uint32_t path, uint64_t number);
