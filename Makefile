@@ -128,6 +128,9 @@ DEFINES += $(PARTS_OUT:%=-DGLINT_WITH_%=0) $(if $(PARTS_OUT),-Wno-type-limits)
 # generic kernels, POSIX instead of inotify, eventfd etc., and no --untrusted.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE) $(if $(THREADS),,-DGLINT_NO_THREADS)
 
+# The functions of glint.h are visible in the shared library. Calls of them within the engine stay direct.
+OWN_CALLS := $(if $(WASM),,-fno-semantic-interposition)
+
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
 ifdef SANITIZE
   SAN_FLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -264,7 +267,7 @@ $(BUILD)/bindings/command/dialect.o: | $(BUILD)/bindings/command/dialect.h
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) -fno-semantic-interposition $(ISA) $(OWN) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) $(OWN_CALLS) $(ISA) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
