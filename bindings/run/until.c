@@ -8,12 +8,15 @@
 
 #include "bindings/run/run.h"
 
+#define STUCK 0.9 // four times the samples reduce most errors to a half or less
+
 typedef struct ladder {
     glintL_run *run;
     const glintL_frame_planner *planner;
     int64_t index; // the frame's number
     double most; // samples, at most
     double start_ms, step_ms; // step_ms: time of the last picture and its partner
+    double errors[3]; // of the last pictures, the newest first; 0: none
 } ladder;
 
 bool glintL_run_refines(const glintL_run *run) { return run->request.until > 0 || run->request.seconds > 0; }
@@ -64,10 +67,14 @@ static glintL_work *step(ladder *l, double samples)
                                   fail_render(l, NULL, &error));
     glintL_work_destroy(partner);
     l->step_ms = glintL_now_ms() - start;
-    if (good)
-        return work;
-    glintL_work_destroy(work);
-    return NULL;
+    if (!good) {
+        glintL_work_destroy(work);
+        return NULL;
+    }
+    l->errors[2] = l->errors[1];
+    l->errors[1] = l->errors[0];
+    l->errors[0] = work->error;
+    return work;
 }
 
 // Returns whether the next step, which takes as long as its share of samples says, ends in time.
@@ -77,13 +84,19 @@ static bool has_time(const ladder *l, double factor)
     return limit == 0 || glintL_now_ms() - l->start_ms + factor * l->step_ms <= limit;
 }
 
+// Returns whether more samples hardly reduce the error. With `adaptive`, pixels that keep one sample keep its noise.
+static bool is_stuck(const ladder *l) { return l->errors[2] > 0 && l->errors[0] > STUCK * l->errors[2]; }
+
 static void warn_of_rest(const ladder *l, const glintL_work *work)
 {
     const glintL_request *request = &l->run->request;
     const double samples = work->render.desc.samples;
     if (request->until == 0 || work->error <= request->until)
         return;
-    if (samples == l->most)
+    if (is_stuck(l))
+        glintL_run_warn(l->run, "frame %" PRId64 ": --until: the error is %.3g, above %g, after %.0f samples, and more samples do not "
+                        "reduce it; use a smaller --adaptive, or more samples of lights", l->index, work->error, request->until, samples);
+    else if (samples == l->most)
         glintL_run_warn(l->run, "frame %" PRId64 ": --until: the error is %.3g, above %g, after %.0f samples, the most%s",
                         l->index, work->error, request->until, samples,
                         l->most < GLINTL_SAMPLES_MAX ? "; use more --samples" : "");
@@ -99,11 +112,11 @@ glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner,
         l.most = planner->render->desc.samples;
     double samples = 2;
     glintL_work *work = step(&l, samples);
-    while (work && samples < l.most && !(run->request.until > 0 && work->error <= run->request.until)) {
+    while (work && samples < l.most && work->error > run->request.until) {
         const double more = fmin(2 * samples, l.most);
         if (run->reporter.step)
             run->reporter.step(run->reporter.context, samples, work->error);
-        if (!has_time(&l, more / samples))
+        if (is_stuck(&l) || !has_time(&l, more / samples))
             break;
         samples = more;
         glintL_work_destroy(work);

@@ -119,9 +119,14 @@ check "more samples than the first picture has" test "$n" -ge 4
 check "no step is begun that cannot end in time: $ms ms" test "$ms" -lt 6000 # the machine may be busy
 exits 0 "the samples of the time" scene.lua -f 2 --set what=indirect --size 120x80 --samples "$n" -q -o 'n_%d.png'
 check "the picture of the time has the bytes of its samples" cmp time_2.png n_2.png
+exits 0 "a time for a picture without noise" scene.lua -f 2 --set what=flat --seconds 100 --json -o 'flat_%d.png'
+check "a picture without noise takes no more samples" test "$(number samples)" -eq 2
 exits 0 "an error and a time" scene.lua -f 2 --until 1e-9 --seconds 0.05 -o 'both_%d.png'
 says "an error and a time" 'frame 2: --until: the error is .* after [0-9]* samples, the most in 0.05 seconds'
 says "the line of a frame" '^frame 2: both_2.png, .* ms, [0-9]* samples, error 0\.[0-9]*$'
+
+exits 0 "noise in pixels with one sample" scene.lua -f 2 --until 1e-9 --adaptive 3 --json -o 'stuck_%d.png'
+says "noise in pixels with one sample" 'after 8 samples, and more samples do not reduce it; use a smaller --adaptive'
 
 # SIGINT ends the frame, and no file of it is left.
 rm -f int_*
