@@ -120,7 +120,8 @@ endif
 # WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): no other
 # object changes. WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
 EFFECTS  := $(filter-out adaptive pattern translucent,$(notdir $(patsubst %/,%,$(wildcard engine/effects/*/))))
-LEFT_OUT := $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT)))
+# bounce bounds the light along a ray, which indirect reads; rough follows its rays by indirect's paths.
+LEFT_OUT := $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough)))
 PARTS_OUT := $(filter-out all $(EFFECTS),$(WITHOUT))
 DEFINES += $(PARTS_OUT:%=-DGLINT_WITH_%=0) $(if $(PARTS_OUT),-Wno-type-limits)
 

@@ -67,6 +67,8 @@ typedef enum glint_stage_time {
     GLINT_AT_LIGHT, ///< after each light or, for an area light, after its samples
     GLINT_AT_SHADED, ///< after each chunk of lights is shaded
     GLINT_AT_REST, ///< after all lights
+    GLINT_AT_MISSED, ///< the secondary rays that leave the scene are known; not if the walk has all of them
+    GLINT_AT_SENT, ///< the light of secondary rays is added to the tile that they left
     GLINT_AT_SUMMED, ///< the sums of the sample are complete
     GLINT_AT_DONE, ///< after the last sample, before the mean is taken
     GLINT_AT_SIGN, ///< keys of cached results are set

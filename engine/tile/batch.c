@@ -242,14 +242,6 @@ void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TIL
             batch->rays->active[g] & (uint16_t) ~(batch->whole ? batch->tile.at.hits[g] : batch->with_sample[g]);
 }
 
-/// Computes the background for rays without a sample, if a program gives it.
-static void see_environment(glint_batch *batch, const glint_tile_frame *frame)
-{
-    uint16_t missed[GLINT_TILE_GROUPS];
-    glint_batch_find_missed(batch, missed);
-    glint_tile_environment_of(&batch->tile, frame, batch->rays, missed, batch->shown);
-}
-
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
@@ -265,8 +257,8 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
         glint_tile_find_surfaces(tile, frame);
     if (frame->plan->absorbs)
         absorb(batch, frame);
-    if (frame->plan->environment && !batch->whole)
-        see_environment(batch, frame);
+    if (!batch->whole)
+        glint_tile_step(tile, frame, GLINT_AT_MISSED, &(glint_sample_walk) { .batch = batch });
     return any;
 }
 

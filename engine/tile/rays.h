@@ -44,9 +44,5 @@ typedef struct glint_rays {
 void glint_rays_clear(glint_rays *rays, uint32_t group_count);
 /// Puts a ray into lane i, which becomes active.
 void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray);
-/// effects/environment/environment.c: fills `light` of the rays in `missed` with the background that a program
-/// computes.
-void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays,
-                               const uint16_t *missed, double (*light)[GLINT_TILE_SAMPLES]);
 
 #endif

@@ -229,6 +229,7 @@ typedef struct glint_sample_walk {
     uint32_t from, count; ///< the current chunk of the plan's light rows: its first row and its number of rows; at
         ///< GLINT_AT_LIGHT, `count` is the number of rows from `slot` on, in that chunk
     uint32_t slot;
+    struct glint_batch *batch; ///< the secondary rays, at GLINT_AT_MISSED and GLINT_AT_SENT
 } glint_sample_walk;
 
 /// Compute the rays of the sample, and the surfaces, unless the walk has them.
@@ -434,15 +435,6 @@ void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame
 /// active: see glint_refine.in_codes.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
-/// effects/indirect/: follows paths of light from the hits of `seen`, and adds their light to the sums of `tile`.
-/// `from`: the batch that `seen` belongs to; NULL: `seen` is `tile`, with the hits of the eye.
-struct glint_batch;
-void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
-                         const struct glint_batch *from);
-/// effects/rough/: the same for the rays that rough surfaces of `seen` reflect and refract.
-void glint_tile_rough(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
-                      const struct glint_batch *from);
-
 /// Returns the lanes of group `g` inside an absorbing medium, whose light is tinted even without an occluder. The sample
 /// is shaded.
 static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
@@ -521,14 +513,6 @@ static inline void glint_real_put(void *array, glint_precision precision, uint32
     else
         ((double *)array)[i] = x;
 }
-
-/// effects/vertex_shading/vertex.c: flat and Gouraud shading.
-/// Sets at.sampled to the hits that are shaded per sample. Returns whether there are any.
-bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
-/// Returns whether there are other hits, with light computed per face or vertex.
-bool glint_tile_has_shading_points(const glint_tile *tile);
-/// Adds the light of faces and vertices to the sums of these other hits; after `shade`. The points must be known.
-void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 
 /// effects/derivative/derivative.c: how fast the light of the current sample changes with parameters. At the first
 /// call of a sample, adds the part without lights; then the part of `count` lights of the plan from `from` on, whose

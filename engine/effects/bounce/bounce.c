@@ -336,16 +336,8 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
     const bool any = glint_batch_cast(&bounce->batch, frame);
     if (any || bounce->batch.whole)
         glint_batch_light(&bounce->batch, frame, any);
-    if (frame->plan->derivatives) {
-        if (frame->plan->absorbs)
-            glint_derive_absorption(&bounce->batch, frame);
-        glint_derive_collect(&bounce->batch, frame->plan, to);
-    }
     collect(&bounce->batch, frame->plan, to);
-    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
-        glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);
-    if (any && frame->plan->runs[GLINT_STAGE_ROUGH])
-        glint_tile_rough(to, frame, &bounce->batch.tile, &bounce->batch);
+    glint_tile_step(to, frame, GLINT_AT_SENT, &(glint_sample_walk) { .any = any, .batch = &bounce->batch });
     if (any)
         spawn(bounce, frame, level);
 }

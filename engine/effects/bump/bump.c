@@ -89,8 +89,10 @@ static bool is_bumped(const glint_plan_pattern *own, uint32_t fields)
     return own->slope;
 }
 
-void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame)
+/// Turns the normals of surfaces with a bump. The original normals go to tile->unbumped.
+static void turn_normals(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
+    (void)walk;
     const size_t bytes = tile->group_count * GLINT_GROUP * sizeof(double); // at least the size of floats
     const glint_pattern_points points = glint_pattern_points_of(tile);
     for (int c = 0; c < 3; c++)
@@ -190,15 +192,9 @@ bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t 
     return vec_dot(n, direction) > 0;
 }
 
-static void perturb_normals(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
-{
-    (void)walk;
-    glint_tile_bump(tile, frame);
-}
-
 /// Runs as a part of the stages surface and light.
 const glint_stage glint_stage_bump = {
     .called = glint_plan_bumps,
-    .step[GLINT_AT_SURFACE] = perturb_normals,
+    .step[GLINT_AT_SURFACE] = turn_normals,
     .limit = cut_horizon,
 };

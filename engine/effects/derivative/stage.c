@@ -48,6 +48,14 @@ static void fade(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
         glint_derive_fade(tile, frame);
 }
 
+/// Adds the slopes of secondary rays.
+static void collect(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (frame->plan->absorbs)
+        glint_derive_absorption(walk->batch, frame);
+    glint_derive_collect(walk->batch, frame->plan, tile);
+}
+
 static void store(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     (void)walk;
@@ -75,7 +83,7 @@ const glint_stage glint_stage_derivative = {
     .reads = GLINT_READS_OWN(DERIVATIVE),
     .normals = true,
     .remote = true,
-    .step = { [GLINT_AT_SHADED] = derive, [GLINT_AT_REST] = fade, [GLINT_AT_STORE] = store },
+    .step = { [GLINT_AT_SHADED] = derive, [GLINT_AT_REST] = fade, [GLINT_AT_SENT] = collect, [GLINT_AT_STORE] = store },
     .adds = glint_tile_adds_anywhere,
     .singles = always,
     .create = create,

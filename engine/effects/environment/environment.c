@@ -8,7 +8,7 @@
 #include "engine/effects/environment/directions.h"
 #include "engine/effects/pattern/inputs.h"
 #include "engine/effects/prepare.h"
-#include "engine/tile/rays.h"
+#include "engine/tile/batch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -286,23 +286,25 @@ static void run_rays(glint_tile *tile, const glint_tile_frame *frame, const glin
     }
 }
 
-void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays,
-                               const uint16_t *missed, double (*light)[GLINT_TILE_SAMPLES])
+/// Computes the background for rays of a batch that leave the scene.
+static void show_missed(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    uint16_t ray[GLINT_PROGRAM_LANES];
+    const glint_rays *rays = walk->batch->rays;
+    uint16_t missed[GLINT_TILE_GROUPS], ray[GLINT_PROGRAM_LANES];
     uint32_t count = 0;
+    glint_batch_find_missed(walk->batch, missed);
     for (uint32_t g = 0; g < rays->group_count; g++) {
         tile->counts.work.environment += (uint64_t)__builtin_popcount(missed[g]);
         for (unsigned bits = missed[g]; bits; bits &= bits - 1) {
             ray[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits));
             if (count < GLINT_PROGRAM_LANES)
                 continue;
-            run_rays(tile, frame, rays, ray, count, light);
+            run_rays(tile, frame, rays, ray, count, walk->batch->shown);
             count = 0;
         }
     }
     if (count)
-        run_rays(tile, frame, rays, ray, count, light);
+        run_rays(tile, frame, rays, ray, count, walk->batch->shown);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
 }
 
@@ -324,7 +326,7 @@ const glint_stage glint_stage_environment = {
     .called = called,
     .sums = true,
     .remote = true,
-    .step[GLINT_AT_SIGHT] = need_directions,
+    .step = { [GLINT_AT_SIGHT] = need_directions, [GLINT_AT_MISSED] = show_missed },
     .after_shade = add_background,
     .adds = glint_tile_adds_anywhere,
     .create = glint_environment_create,

@@ -403,11 +403,13 @@ static void count_rays(const struct glint_indirect *indirect, glint_tile *to)
 static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
 {
     glint_batch *batch = &indirect->batch;
-    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    const bool lit = shading_points ? glint_tile_choose_sampled(&batch->tile, frame) : any;
-    glint_batch_shine(batch, &indirect->frame, lit);
-    if (shading_points && glint_tile_has_shading_points(&batch->tile))
-        glint_tile_vertex(&batch->tile, frame);
+    const glint_stage *vertex = frame->plan->runs[GLINT_STAGE_VERTEX] ? glint_stage_table[GLINT_STAGE_VERTEX] : NULL;
+    glint_sample_walk walk = { .rays = true, .points = true, .any = any, .shines = any };
+    if (vertex)
+        vertex->step[GLINT_AT_SIGHT](&batch->tile, frame, &walk);
+    glint_batch_shine(batch, &indirect->frame, walk.shines);
+    if (vertex)
+        vertex->step[GLINT_AT_REST](&batch->tile, frame, &walk);
 }
 
 void glint_indirect_follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to,
@@ -443,16 +445,19 @@ void glint_indirect_begin(struct glint_indirect *indirect, const glint_tile_fram
             glint_real_put(indirect->up[c], frame->plan->desc.precision, i, c == 2);
 }
 
-void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
-                         const glint_batch *from)
+/// Follows paths of light from the hits of `seen`, and adds their light to the sums of `tile`. from: the batch that
+/// `seen` belongs to; NULL: `seen` is `tile`, with the hits of the eye.
+static void gather(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from)
 {
     struct glint_indirect *indirect = tile->own[GLINT_STAGE_INDIRECT];
     glint_batch *batch = &indirect->batch;
     glint_indirect_begin(indirect, frame);
     glint_plan_drop(&indirect->plan, GLINT_STAGE_VISIBLE_LIGHT);
     indirect->plan.visible_light_count = 0;
-    if (frame->plan->indirect.is_sky) // the sky counts as open whatever the background is
+    if (frame->plan->indirect.is_sky) { // the sky counts as open whatever the background is
         indirect->plan.environment = NULL;
+        glint_plan_drop(&indirect->plan, GLINT_STAGE_ENVIRONMENT);
+    }
     const uint32_t paths = glint_indirect_find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
     batch->ordered = from != NULL; // rays may share pixels
@@ -483,8 +488,15 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     if (!walk->any)
         return;
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_indirect(tile, frame, tile, NULL);
+    gather(tile, frame, tile, NULL);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_INDIRECT, false);
+}
+
+/// Adds this light at the hits of secondary rays.
+static void add_sent(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (walk->any)
+        gather(tile, frame, &walk->batch->tile, walk->batch);
 }
 
 static void release(glint_plan *plan)
@@ -505,7 +517,7 @@ const glint_stage glint_stage_indirect = {
     .sums = true,
     .normals = true,
     .remote = true,
-    .step[GLINT_AT_REST] = add,
+    .step = { [GLINT_AT_REST] = add, [GLINT_AT_SENT] = add_sent },
     .adds = glint_tile_adds_to_hits,
     .create = create,
     .destroy = glint_indirect_destroy,

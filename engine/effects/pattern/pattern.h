@@ -66,9 +66,6 @@ void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts);
 
-/// Turns the normals of surfaces with a bump. The original normals go to tile->unbumped.
-void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame);
-
 /// Returns the offset of the plane of a field's channel among the tile's planes; -1: no material has it.
 static inline ptrdiff_t glint_plane_start(const glint_plan_patterns *patterns, int field, int channel)
 {

@@ -155,7 +155,7 @@ static void begin_tile(struct glint_rough *rough, const glint_tile_frame *frame)
     glint_indirect_begin(rough->paths, &rough->frame);
 }
 
-void glint_tile_rough(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from)
+static void gather(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from)
 {
     struct glint_rough *rough = tile->own[GLINT_STAGE_ROUGH];
     struct glint_indirect *paths = rough->paths;
@@ -202,8 +202,15 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     if (!walk->any || tile->direct || !glint_tile_shows(tile, frame, glint_is_spreading))
         return;
     glint_tile_need_points(tile, frame, walk);
-    glint_tile_rough(tile, frame, tile, NULL);
+    gather(tile, frame, tile, NULL);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_ROUGH, false);
+}
+
+/// Adds this light at the hits of secondary rays.
+static void add_sent(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    if (walk->any)
+        gather(tile, frame, &walk->batch->tile, walk->batch);
 }
 
 const glint_stage glint_stage_rough = {
@@ -218,7 +225,7 @@ const glint_stage glint_stage_rough = {
     .normals = true,
     .remote = true,
     .adds = adds,
-    .step[GLINT_AT_REST] = add,
+    .step = { [GLINT_AT_REST] = add, [GLINT_AT_SENT] = add_sent },
     .create = create,
     .destroy = destroy,
     .sized = true,

@@ -272,8 +272,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
     for (int c = 0; c < 3; c++)
         tile->viewed[c] = vertex->nowhere;
     load_block(vertex, frame, block);
-    if (glint_plan_bumps(frame->plan))
-        glint_tile_bump(tile, frame);
+    glint_tile_step(tile, frame, GLINT_AT_SURFACE, NULL);
     glint_batch_shine(&vertex->batch, frame, true);
     glint_batch_end(&vertex->batch, to);
     store_block(vertex, frame, block);
@@ -337,7 +336,8 @@ static bool has_shading_points(const glint_prim *prim)
     return prim->kind == GLINT_PRIM_TRIANGLE && prim->shading_points != GLINT_MISS;
 }
 
-bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
+/// Sets at.sampled to the hits that are shaded per sample. Returns whether there are any.
+static bool choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
 {
     uint32_t last = GLINT_MISS;
     unsigned any = 0;
@@ -358,7 +358,8 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
     return any;
 }
 
-bool glint_tile_has_shading_points(const glint_tile *tile)
+/// Returns whether there are other hits, with light computed per face or vertex.
+static bool shows_shading_points(const glint_tile *tile)
 {
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++)
@@ -406,11 +407,6 @@ static void add_to(glint_tile *tile, const glint_tile_frame *frame, double (*to)
     tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
 }
 
-void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
-{
-    add_to(tile, frame, tile->film.sum + GLINT_TERM_DIFFUSE);
-}
-
 static bool called(const glint_plan *plan)
 {
     return glint_plan_is_lit(plan) && plan->geometry->table.shading_point_count > 0;
@@ -418,19 +414,16 @@ static bool called(const glint_plan *plan)
 
 static void choose(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    walk->shines = walk->any && glint_tile_choose_sampled(tile, frame);
+    walk->shines = walk->any && choose_sampled(tile, frame);
 }
 
 /// Adds the light of faces and vertices.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
-    if (!walk->any || !glint_tile_has_shading_points(tile))
+    if (!walk->any || !shows_shading_points(tile))
         return;
     glint_tile_need_points(tile, frame, walk);
-    if (walk->gathered)
-        add_to(tile, frame, glint_tile_gathered_points(tile));
-    else
-        glint_tile_vertex(tile, frame);
+    add_to(tile, frame, walk->gathered ? glint_tile_gathered_points(tile) : tile->film.sum + GLINT_TERM_DIFFUSE);
 }
 
 const glint_stage glint_stage_vertex = {
