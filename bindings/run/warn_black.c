@@ -29,37 +29,11 @@ static bool any_light(const glint_scene *scene)
 
 // ---- The camera's view ----
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static bool normalize(double v[3])
-{
-    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-    return length > 0 && isfinite(length);
-}
-
-// Computes the view's axes, unit vectors. False: up is along the view.
-static bool find_axes(const glint_camera_desc *camera, double forward[3], double right[3], double up[3])
-{
-    for (int i = 0; i < 3; i++)
-        forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
-    cross(forward, camera->up, right);
-    if (!normalize(forward) || !normalize(right))
-        return false;
-    cross(right, forward, up);
-    return true;
-}
-
 // Returns the hit of the ray nearest to the picture's centre, from a grid of rays. False: no ray hits.
 static bool find_hit(const glint_scene *scene, const glint_camera_desc *camera, const glint_render_desc *desc, glint_hit *hit)
 {
     double forward[3], right[3], up[3], window[4], best = HUGE_VAL;
-    if (!find_axes(camera, forward, right, up))
+    if (!glintL_view_axes(camera, forward, right, up))
         return true; // treated as a hit: not known
     glint_camera_window(camera, desc->width, desc->height, window);
     for (int i = 0; i < RAYS_ACROSS * RAYS_DOWN; i++) {

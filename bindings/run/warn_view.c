@@ -69,20 +69,27 @@ static void add_plane(view *v, int i, const double side[3], double sign, double 
     v->limit[i] = dot(v->out[i], v->eye) + (v->is_perspective ? 0 : reach);
 }
 
-// Computes the view. False: the camera looks along its `up`, so that the engine chooses the sides.
+bool glintL_view_axes(const glint_camera_desc *camera, double forward[3], double right[3], double up[3])
+{
+    for (int i = 0; i < 3; i++)
+        forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
+    memcpy(up, camera->up, sizeof camera->up);
+    if (!normalize(forward) || !normalize(up))
+        return false;
+    cross(forward, up, right);
+    if (dot(right, right) < 1e-6 || !normalize(right))
+        return false;
+    cross(right, forward, up);
+    return true;
+}
+
+// Computes the view. False: the camera looks along its `up`.
 static bool make_view(const glint_camera_desc *camera, const glint_render_desc *desc, view *v)
 {
     double right[3], up[3], window[4];
     memcpy(v->eye, camera->eye, sizeof v->eye);
-    for (int i = 0; i < 3; i++)
-        v->forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
-    memcpy(up, camera->up, sizeof up);
-    if (!normalize(v->forward) || !normalize(up))
+    if (!glintL_view_axes(camera, v->forward, right, up))
         return false;
-    cross(v->forward, up, right);
-    if (dot(right, right) < 1e-6 || !normalize(right))
-        return false;
-    cross(right, v->forward, up);
     v->is_perspective = camera->projection == GLINT_PERSPECTIVE;
     glint_camera_window(camera, desc->width, desc->height, window);
     for (int i = 0; i < 4; i++)
