@@ -121,8 +121,9 @@ endif
 # object changes. WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
 EFFECTS  := $(filter-out adaptive pattern translucent,$(notdir $(patsubst %/,%,$(wildcard engine/effects/*/))))
 # bounce bounds the light along a ray, which indirect reads; rough follows its rays by indirect's paths.
-LEFT_OUT := $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough)))
+LEFT_OUT := $(sort $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough))))
 PARTS_OUT := $(filter-out all $(EFFECTS),$(WITHOUT))
+$(foreach part,$(PARTS_OUT),$(if $(shell grep -w 'define GLINT_WITH_$(part)' engine/stages/contract/with.h),,$(error WITHOUT=$(part): no such effect or part of the kernels)))
 DEFINES += $(PARTS_OUT:%=-DGLINT_WITH_%=0) $(if $(PARTS_OUT),-Wno-type-limits)
 
 # PORTABLE=1 builds here as for other machines:
