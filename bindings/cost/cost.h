@@ -151,11 +151,13 @@ typedef struct cost_knob {
     bool is_other_time; ///< the times are not times of a whole frame, so the rows are not on the front
     /// Lists the values, if the plan shows that the scene responds.
     void (*list)(const cost_subject *subject, cost_values *out);
-    glint_status (*apply)(cost_draft *draft, cost_value value, glint_error *error);
+    glint_status (*apply)(cost_draft *draft, cost_value value, glint_error *error); ///< NULL: the value is a number of
+    size_t render_at, scene_at; ///< this field of glint_render_desc or, if not 0, of glint_scene_desc
 } cost_knob;
 
 extern const cost_knob cost_knobs[];
 extern const int cost_knob_count; ///< <= COST_KNOBS_MAX
+glint_status cost_knob_apply(const cost_knob *knob, cost_draft *draft, cost_value value, glint_error *error);
 int cost_knob_find(const char *name, size_t length); ///< -1: none
 /// Returns whether a list such as "samples,model" contains only names of knobs. False: the message is written.
 bool cost_knobs_check(const char *list, char message[GLINTL_MESSAGE_SIZE]);

@@ -1,6 +1,7 @@
 // The knobs of glint cost. A setting that trades accuracy for time is a row of the table at the end: its name, the part
 // of the plan that it depends on, its values, how a value is applied, and where its error arises. Add a row for a new
 // stage.
+#include <stddef.h>
 #include <string.h>
 
 #include "bindings/cost/cost.h"
@@ -36,13 +37,6 @@ static void list_samples(const cost_subject *subject, cost_values *out)
         cost_list_numbers(counts, COUNT(counts), subject->render->desc.samples, out);
 }
 
-static glint_status apply_samples(cost_draft *draft, cost_value value, glint_error *error)
-{
-    (void)error;
-    draft->render.desc.samples = value.number;
-    return GLINT_OK;
-}
-
 // ---- adaptive: the difference between neighbours from which all samples are taken ----
 
 static void list_adaptive(const cost_subject *subject, cost_values *out)
@@ -50,13 +44,6 @@ static void list_adaptive(const cost_subject *subject, cost_values *out)
     static const double thresholds[] = { 0, 0.01, 0.03, 0.1, 0.3 };
     if (has_stage(subject->plan, "cast") && subject->render->desc.samples > 1)
         cost_list_numbers(thresholds, COUNT(thresholds), subject->render->desc.adaptive, out);
-}
-
-static glint_status apply_adaptive(cost_draft *draft, cost_value value, glint_error *error)
-{
-    (void)error;
-    draft->render.desc.adaptive = value.number;
-    return GLINT_OK;
 }
 
 // ---- shutter_times: the moments of an open shutter ----
@@ -318,13 +305,6 @@ static void list_max_depth(const cost_subject *subject, cost_values *out)
     out->truth = out->count - 1;
 }
 
-static glint_status apply_max_depth(cost_draft *draft, cost_value value, glint_error *error)
-{
-    (void)error;
-    draft->render.desc.max_depth = value.number;
-    return GLINT_OK;
-}
-
 // ---- indirect_samples, indirect_bounces: paths of light from surface to surface ----
 
 static void list_indirect_samples(const cost_subject *subject, cost_values *out)
@@ -332,13 +312,6 @@ static void list_indirect_samples(const cost_subject *subject, cost_values *out)
     static const double counts[] = { 1, 4, 16, 64, 256 };
     if (has_stage(subject->plan, "indirect") && subject->scene->desc.has_indirect)
         cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_samples, out);
-}
-
-static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, glint_error *error)
-{
-    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
-    desc.indirect_samples = value.number;
-    return cost_scene_set(draft->scene, &desc, error);
 }
 
 // Lists the numbers of bounces. 0 replaces indirect light by the ambient light. The truth is the largest: fewer bounces
@@ -353,13 +326,6 @@ static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
     out->truth = out->count - 1;
 }
 
-static glint_status apply_indirect_bounces(cost_draft *draft, cost_value value, glint_error *error)
-{
-    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
-    desc.indirect_bounces = value.number;
-    return cost_scene_set(draft->scene, &desc, error);
-}
-
 // ---- ambient_occlusion_samples: rays towards the sky ----
 
 static void list_occlusion_samples(const cost_subject *subject, cost_values *out)
@@ -367,13 +333,6 @@ static void list_occlusion_samples(const cost_subject *subject, cost_values *out
     static const double counts[] = { 1, 4, 16, 64, 256 };
     if (has_stage(subject->plan, "indirect") && subject->scene->desc.has_ambient_occlusion)
         cost_list_numbers(counts, COUNT(counts), subject->scene->desc.ambient_occlusion_samples, out);
-}
-
-static glint_status apply_occlusion_samples(cost_draft *draft, cost_value value, glint_error *error)
-{
-    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
-    desc.ambient_occlusion_samples = value.number;
-    return cost_scene_set(draft->scene, &desc, error);
 }
 
 // ---- bits, encode: the file ----
@@ -431,31 +390,43 @@ static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error
 #define SURFACES "a visible surface"
 #define INDIRECT "indirect light"
 #define PNG "an output in .png"
+#define IN_RENDER(field) .render_at = offsetof(glint_render_desc, field)
+#define IN_SCENE(field) .scene_at = offsetof(glint_scene_desc, field)
 
 const cost_knob cost_knobs[] = {
-    { "samples", SURFACES, COST_ERROR_FILM, true, false, list_samples, apply_samples },
-    { "adaptive", "several samples a pixel", COST_ERROR_FILM, true, false, list_adaptive, apply_adaptive },
-    { "shutter_times", "an animation whose camera has an open shutter", COST_ERROR_FILM, true, false, list_shutter_times,
-      apply_shutter_times },
-    { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, apply_shadows },
+    { "samples", SURFACES, COST_ERROR_FILM, true, false, list_samples, IN_RENDER(samples) },
+    { "adaptive", "several samples a pixel", COST_ERROR_FILM, true, false, list_adaptive, IN_RENDER(adaptive) },
+    { "shutter_times", "an animation whose camera has an open shutter", COST_ERROR_FILM, true, false,
+      list_shutter_times, .apply = apply_shutter_times },
+    { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, .apply = apply_shadows },
     { "light_samples", "a light with a surface and soft shadows", COST_ERROR_FILM, true, false, list_light_samples,
-      apply_light_samples },
-    { "precision", SURFACES, COST_ERROR_FILM, true, false, list_precision, apply_precision },
-    { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, apply_model },
-    { "segments", "a sphere_mesh", COST_ERROR_FILM, true, false, list_segments, apply_segments },
-    { "shading", "a mesh and a light", COST_ERROR_FILM, true, false, list_shading, apply_shading },
-    { "max_depth", "a mirror or glass", COST_ERROR_FILM, true, false, list_max_depth, apply_max_depth },
-    { "indirect_samples", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_samples, apply_indirect_samples },
-    { "indirect_bounces", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_bounces, apply_indirect_bounces },
+      .apply = apply_light_samples },
+    { "precision", SURFACES, COST_ERROR_FILM, true, false, list_precision, .apply = apply_precision },
+    { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, .apply = apply_model },
+    { "segments", "a sphere_mesh", COST_ERROR_FILM, true, false, list_segments, .apply = apply_segments },
+    { "shading", "a mesh and a light", COST_ERROR_FILM, true, false, list_shading, .apply = apply_shading },
+    { "max_depth", "a mirror or glass", COST_ERROR_FILM, true, false, list_max_depth, IN_RENDER(max_depth) },
+    { "indirect_samples", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_samples, IN_SCENE(indirect_samples) },
+    { "indirect_bounces", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_bounces, IN_SCENE(indirect_bounces) },
     { "ambient_occlusion_samples", "ambient occlusion", COST_ERROR_FILM, true, false, list_occlusion_samples,
-      apply_occlusion_samples },
-    { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },
-    { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, apply_encode },
+      IN_SCENE(ambient_occlusion_samples) },
+    { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, .apply = apply_bits },
+    { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, .apply = apply_encode },
     { "reuse", "a second frame (in a loop of scene:render, choose a later frame than the first with --frame)",
-      COST_ERROR_FILM, false, true, list_reuse, apply_reuse },
+      COST_ERROR_FILM, false, true, list_reuse, .apply = apply_reuse },
 };
 const int cost_knob_count = COUNT(cost_knobs);
 _Static_assert(COUNT(cost_knobs) <= COST_KNOBS_MAX, "a study has room for every knob");
+
+glint_status cost_knob_apply(const cost_knob *knob, cost_draft *draft, cost_value value, glint_error *error)
+{
+    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
+    if (knob->apply)
+        return knob->apply(draft, value, error);
+    char *at = knob->scene_at ? (char *)&desc + knob->scene_at : (char *)&draft->render.desc + knob->render_at;
+    memcpy(at, &value.number, sizeof value.number);
+    return knob->scene_at ? cost_scene_set(draft->scene, &desc, error) : GLINT_OK;
+}
 
 int cost_knob_find(const char *name, size_t length)
 {

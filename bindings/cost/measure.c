@@ -50,7 +50,7 @@ static glint_status apply_knobs(cost_study *study, const cost_case *c, cost_draf
     glint_status status = GLINT_OK;
     for (int i = 0; i < cost_knob_count && !status; i++)
         if (c->choice[i] >= 0)
-            status = cost_knobs[i].apply(draft, study->values[i].value[c->choice[i]], error);
+            status = cost_knob_apply(&cost_knobs[i], draft, study->values[i].value[c->choice[i]], error);
     return status;
 }
 
