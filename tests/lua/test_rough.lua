@@ -1,0 +1,239 @@
+-- Rough reflection and refraction against integrals of the same formulas by material:evaluate, closed forms, and
+-- limits; and identical pictures in every configuration.
+local tally = dofile "tests/lua/tally.lua"
+local check, near, raises = tally.check, tally.near, tally.raises
+local glint = require "glint"
+
+local tests = {}
+local DISTRIBUTIONS <const> = { "ggx", "beckmann" }
+
+-- The share of a white surroundings' light that the facets reflect in a direction with this cosine: the integral of
+-- the lobe over the hemisphere.
+local function albedo(material, cosine, n)
+  local sum, eye = 0, { math.sqrt(1 - cosine * cosine), cosine, 0 }
+  for i = 0, n - 1 do
+    local c = (i + 0.5) / n
+    local s = math.sqrt(1 - c * c)
+    for k = 0, 2 * n - 1 do
+      local angle = math.pi * (k + 0.5) / n
+      local light = { s * math.cos(angle), c, s * math.sin(angle) }
+      sum = sum + material:evaluate({ normal = { 0, 1, 0 }, to_light = light, to_eye = eye }).specular.x
+    end
+  end
+  return sum / (n * n)
+end
+
+-- Renders a ball seen by parallel rays, and returns a function of the column that gives a pass and the cosine there.
+local SIDE <const> = 63
+local function ball(material, fields, options)
+  local scene = glint.scene { glint.sphere { center = { 0, 0, 0 }, radius = 1, material = material } }
+  scene.camera = glint.camera { eye = { 0, 0, 20 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2.2 }
+  for name, value in pairs(fields) do
+    if type(name) == "number" then scene:add(value) else scene[name] = value end
+  end
+  local given = { width = SIDE, height = SIDE, samples = 16, passes = "beauty,mirror,transmission,specular" }
+  for name, value in pairs(options or {}) do given[name] = value end
+  local image = scene:render(given)
+  return function(x, pass)
+    local away = (SIDE // 2 - x) * 2.2 / SIDE
+    return image:pixel(x, SIDE // 2, pass), math.sqrt(1 - away * away)
+  end
+end
+
+-- In a white furnace a ball loses only what single scattering loses.
+function tests.furnace()
+  for _, distribution in ipairs(DISTRIBUTIONS) do
+    for _, roughness in ipairs { 0.4, 0.6, 1 } do
+      local material = glint.material { model = "cook_torrance", f0 = 1, diffuse = 0, roughness = roughness, distribution = distribution }
+      for _, precision in ipairs { "double", "float" } do
+        local at = ball(material, { background = 1, reflection_samples = 256 }, { precision = precision })
+        for _, x in ipairs { 31, 20, 8 } do
+          local got, cosine = at(x, "mirror")
+          near(got, albedo(material, cosine, 200), 1.5e-3, ("%s %g, %s, cosine %.3f"):format(distribution, roughness, precision, cosine))
+        end
+      end
+    end
+    local fresnel = glint.material { model = "cook_torrance", f0 = { 0.04, 0.5, 1 }, diffuse = 0, roughness = 0.5, distribution = distribution }
+    local got, cosine = ball(fresnel, { background = 1, reflection_samples = 256 })(12, "mirror")
+    near(got, albedo(fresnel, cosine, 200), 1e-3, distribution .. ": Schlick's reflectance at the facet")
+    local mirror = glint.material { diffuse = 0, mirror = 1, roughness = 0.6, distribution = distribution }
+    local white = glint.material { model = "cook_torrance", f0 = 1, roughness = 0.6, distribution = distribution }
+    local seen, c = ball(mirror, { background = 1, reflection_samples = 256 })(15, "mirror")
+    near(seen, albedo(white, c, 200), 1.5e-3, distribution .. ": a rough mirror is white facets")
+  end
+end
+
+-- Half of the sky is white, half black: the mean of the lobe over one half, by the same integral.
+function tests.step_sky()
+  local step = glint.pattern(function(d) return glint.select(glint.less(0, d.x), 1, 0) end)
+  for _, distribution in ipairs(DISTRIBUTIONS) do
+    local material = glint.material { model = "cook_torrance", f0 = 1, diffuse = 0, roughness = 0.7, distribution = distribution }
+    local at = ball(material, { background = step, reflection_samples = 1024 })
+    for _, x in ipairs { 31, 24, 38 } do
+      local got, cosine = at(x, "mirror")
+      local away = (x - SIDE // 2) * 2.2 / SIDE
+      local normal, n, sum = { away, 0, cosine }, 300, 0
+      for i = 0, n - 1 do
+        local c = (i + 0.5) / n -- height above the surface's horizon
+        local s = math.sqrt(1 - c * c)
+        for k = 0, 2 * n - 1 do
+          local angle = math.pi * (k + 0.5) / n
+          local across = s * math.cos(angle)
+          local light = { normal[1] * c + normal[3] * across, s * math.sin(angle), normal[3] * c - normal[1] * across }
+          if light[1] > 0 then
+            sum = sum + material:evaluate({ normal = normal, to_light = light, to_eye = { 0, 0, 1 } }).specular.x
+          end
+        end
+      end
+      near(got, sum / (n * n), 4e-3, ("%s: a step sky, column %d"):format(distribution, x))
+    end
+  end
+end
+
+-- Roughness 0 is the mirror, bit for bit, and small roughness approaches it.
+function tests.smooth_limit()
+  local sky = glint.pattern(function(d) return d * 0.5 + 0.5 end)
+  local function picture(fields)
+    fields.diffuse = 0.2
+    return ball(glint.material(fields), { background = sky, ambient = 0.5, glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } } })
+  end
+  for _, kind in ipairs { { mirror = 0.8 }, { fresnel = true, transmission = 0.9 }, { transmission = 0.7, mirror = 0.2, ior = 1.3 } } do
+    local function with(more)
+      local fields = more
+      for name, value in pairs(kind) do fields[name] = value end
+      return picture(fields)
+    end
+    local sharp, zero, narrow = with {}, with { roughness = 0 }, with { roughness = 1e-4 }
+    for x = 3, 59, 7 do
+      check(sharp(x, "beauty") == zero(x, "beauty"), "roughness 0 is smooth, column %d", x)
+    end
+    if not kind.transmission then
+      for x = 6, 56, 10 do near(narrow(x, "mirror"), (sharp(x, "mirror")), 1e-5, "roughness 1e-4, column " .. x) end
+    end
+  end
+  local metal = picture { model = "cook_torrance", f0 = 1, roughness = 1e-6 }
+  local mirror = picture { mirror = 1 }
+  for x = 6, 56, 10 do near(metal(x, "mirror"), (mirror(x, "mirror")), 1e-5, "narrow facets, column " .. x) end
+end
+
+-- All light that meets rough glass is reflected or refracted, apart from what single scattering loses.
+function tests.glass()
+  for _, distribution in ipairs(DISTRIBUTIONS) do
+    local loss = 0
+    for _, roughness in ipairs { 0.05, 0.3, 0.6 } do
+      local glass = glint.material { diffuse = 0, fresnel = true, transmission = 1, roughness = roughness, distribution = distribution }
+      local at = ball(glass, { background = 1, reflection_samples = 256 }, { max_depth = 30 })
+      local light = at(31, "beauty")
+      check(light < 1.003 - loss, "%s, roughness %g: %g of the light, less than from smoother glass", distribution, roughness, light)
+      loss = 1 - light
+    end
+    check(loss < 0.25, "%s: rough glass keeps three quarters, got a loss of %g", distribution, loss)
+  end
+end
+
+-- Lamps have highlights on facets already: reflected rays do not see them again. Other rough mirrors do see them.
+function tests.lamps()
+  local function scene(material, visible)
+    return ball(material, { glint.sphere_light { position = { 0, 4, 4 }, radius = 1.5, radiance = 3, samples = 256, visible = visible },
+      reflection_samples = 1024 }, { samples = 4 })
+  end
+  local metal = glint.material { model = "cook_torrance", f0 = 1, diffuse = 0, roughness = 0.5 }
+  local mirror = glint.material { mirror = 1, diffuse = 0, roughness = 0.5 }
+  local hidden, seen = scene(metal, false), scene(metal, true)
+  for x = 12, 52, 10 do
+    check(hidden(x, "beauty") == seen(x, "beauty") and seen(x, "mirror") == 0, "facets count a lamp once, column %d", x)
+  end
+  local most = 0
+  for x = 12, 52, 10 do
+    local got, want = scene(mirror, true)(x, "mirror"), hidden(x, "specular")
+    most = math.max(most, want)
+    near(got, want, 0.01, "a rough mirror shows the lamp as facets reflect it, column " .. x)
+  end
+  check(most > 0.1, "the lamp is seen: %g", most)
+end
+
+function tests.fields()
+  local material = glint.material {}
+  check(material.roughness == 0 and material.mirror.x == 0, "smooth by default")
+  material.model = "cook_torrance"
+  check(material.roughness == 0.3 and material.mirror.x == 1, "facets reflect by default")
+  material.roughness = 0.6
+  material.model = "phong"
+  check(material.roughness == 0.6 and material.mirror.x == 0, "a given roughness stays")
+  material.roughness = nil
+  check(material.roughness == 0, "nil restores the default")
+  raises("scene.reflection_samples: whole number 0 .. 65536 expected, got -1", function() glint.scene { reflection_samples = -1 } end)
+  raises("material.roughness: number 0 .. 1 expected, got 2", function() glint.material { mirror = 1, roughness = 2 } end)
+  local gold = glint.material { model = "cook_torrance", f0 = { 1, 0.8, 0.3 }, diffuse = 0 }
+  check(ball(gold, { background = 1, reflection_samples = 0 })(31, "beauty") == 0, "no samples: lamps alone")
+  check(ball(gold, { background = 1 }, { max_depth = 0 })(31, "beauty") == 0, "max_depth 0: lamps alone")
+  gold.mirror = 0
+  check(ball(gold, { background = 1 })(31, "beauty") == 0, "mirror 0: lamps alone")
+  gold.mirror, gold.specular = nil, glint.pattern(function() return 0.5 end)
+  local half = ball(gold, { background = 1, reflection_samples = 64 })(31, "mirror")
+  gold.specular = glint.pattern(function(p) return 0.5 + 0 * p.x end)
+  check(ball(gold, { background = 1, reflection_samples = 64 })(31, "mirror") == half and half > 0.3, "a pattern of the highlight weighs what facets reflect")
+end
+
+-- A scene with all of it, whose lamp and roughness change.
+local EVERYTHING <const> = [[
+local glint = require "glint"
+local rough = glint.pattern(function(p) return 0.2 + 0.2 * glint.noise(p * 3) end)
+local wave = glint.pattern(function(p) return 0.02 * glint.sin(9 * p.x) end)
+local floor = glint.material { diffuse = 0.5, mirror = 0.2, roughness = 0.2 }
+local function ball(x, z, radius, fields)
+  return glint.sphere { center = { x, 0.3, z }, radius = radius, material = glint.material(fields) }
+end
+local lamp = glint.sphere_light { position = { 3, 5, 4 }, radius = 0.5, samples = 4, visible = true }
+local scene = glint.scene { ambient = 0.2, background = glint.pattern(function(d) return d * 0.4 + 0.5 end),
+  camera = glint.camera { eye = { 0, 1.5, 7 }, at = { 0, 0.5, 0 } }, reflection_samples = 4,
+  indirect = { samples = 2, bounces = 2 }, lamp,
+  glint.plane { point = { 0, -0.5, 0 }, normal = { 0, 1, 0 }, material = floor },
+  ball(-1.6, 0, 0.8, { model = "cook_torrance", f0 = 0.7, roughness = rough }),
+  ball(0, 0.5, 0.8, { diffuse = 0, fresnel = true, transmission = 0.9, absorption = { 0.3, 0.1, 0 }, roughness = 0.3 }),
+  ball(0, 0.5, 0.3, { diffuse = 0.2, mirror = 0.6, roughness = 0.5, distribution = "beckmann" }),
+  ball(1.7, 0, 0.8, { model = "cook_torrance", f0 = 0.5, roughness = 0.4, opacity = 0.6, bump = wave }),
+  ball(3.2, 1, 0.7, { diffuse = 0, mirror = 0.9 }),
+}
+return glint.animation { scene = scene, frames = 4, samples = 2, frame = function(t, n)
+  lamp.intensity = 1 + t
+  floor.roughness = n == 3 and 0.3 or 0.2
+end }
+]]
+
+function tests.same_everywhere()
+  local command, script, out = os.getenv "GLINT" or "build/glint", os.tmpname(), os.tmpname()
+  local file <close> = assert(io.open(script, "w"))
+  file:write(EVERYTHING)
+  file:flush()
+  local function picture(environment, options)
+    local line = ("%s %s %s --size 75x53 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command, script, options, out, out)
+    local done = os.execute(line) and io.open(out .. "_0004.pfm", "rb")
+    local bytes = done and done:read "a"
+    if done then done:close() end
+    for n = 1, 4 do os.remove(("%s_%04d.pfm"):format(out, n)) end
+    local said <close> = io.open(out)
+    return bytes, said:read "a"
+  end
+  for _, precision in ipairs { "double", "float" } do
+    local usual = picture("", "--precision " .. precision)
+    check(usual, "a picture")
+    for _, way in ipairs {
+      { "", "--threads 1 -f 4" }, { "", "--threads 7 --no-reuse" }, { "", "--shard 4/4" }, { "", "--reuse-memory 1M" },
+      { "GLINT_ISA=ref", "-f 4" }, { "GLINT_ISA=generic", "-f 4" }, { "GLINT_ISA=avx2", "-f 4" }, { "GLINT_ISA=avx512", "-f 4" },
+    } do
+      local other, said = picture(way[1], way[2] .. " --precision " .. precision)
+      local name = ("%s %s %s"):format(precision, way[1], way[2])
+      if not other and said:find("this machine lacks", 1, true) then
+        print("# skip " .. name)
+      else
+        check(other == usual, "the same picture: %s %s", name, other and "" or said)
+      end
+    end
+  end
+  os.remove(script)
+  os.remove(out)
+end
+
+tally.run(tests)
+tally.finish()
