@@ -293,13 +293,14 @@ typedef enum glint_filter {
 
 /// The fields of a texture.
 typedef struct glint_texture_desc {
-    const char *path; ///< path of a .png file, or of a .jpg file if the build has libjpeg; NULL: `rgb` is the picture
+    const char *path; ///< path of a .png, .hdr or .pfm file, or of a .jpg or .exr file if the build has libjpeg or OpenEXR;
+        ///< NULL: `rgb` is the picture
     const uint8_t *rgb; ///< red, green and blue of each pixel, 8 bits each, top row first; borrowed for the call
     int width, height; ///< size of `rgb`, pixels, >= 1
     glint_wrap wrap; ///< default repeat
     glint_filter filter; ///< default bilinear
     bool linear; ///< true: pixel values are linear. false, the default: they are sRGB and are decoded, unless the
-        ///< file declares itself linear (gAMA 1.0)
+        ///< file declares itself linear (gAMA 1.0). .hdr, .exr and .pfm are always linear
 } glint_texture_desc;
 
 /// Returns the defaults: no path, repeat, bilinear, sRGB.

@@ -1,9 +1,8 @@
 -- Things under a sky that is a picture.
 --
 -- The script paints a picture of all directions, with clouds and hills, and sets it as the scene's background. The eye,
--- the mirror and the glass see it, and it lights matt surfaces. Only the sun is a lamp: only one random ray in
--- thousands would hit such a small, bright spot. `--set file=sky.png` uses your own picture, twice as wide as high,
--- with the horizon in the middle.
+-- the mirror and the glass see it, and it lights matt surfaces. A PNG holds no light above white, so the sun is a lamp.
+-- `--set file=sky.hdr` uses your own picture, twice as wide as high, with the horizon in the middle; it may hold a sun.
 --     glint scripts/sky.lua -o sky.mp4
 local glint = require "glint"
 local png = require "glint.png"

@@ -966,7 +966,7 @@ function shader:evaluate(at) end
 function glint.shader(f) end
 
 ---@class glint.texture_fields
----@field file string  a PNG file, 8 or 16 bits
+---@field file string  a .png, .jpg, .hdr, .exr or .pfm file. The last three hold linear light, also above 1. JPEG and OpenEXR need a build with their libraries
 ---@field wrap? "repeat"|"clamp"|"around"  beyond 0 .. 1: repeats the picture, extends its border, or repeats it horizontally and extends its border vertically. Default "repeat"
 ---@field filter? "bilinear"|"nearest"  "bilinear" interpolates four texels of a copy of the picture that is reduced to fit the footprint; "nearest" takes the nearest texel. Default "bilinear"
 ---@field transfer? "srgb"|"linear"  how the file's values are read. Default "srgb", except for a file that is marked as linear

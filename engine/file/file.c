@@ -1,6 +1,8 @@
 #include "engine/file/file.h"
 
 #include "engine/base/status.h"
+#include "engine/file/exr.h"
+#include "engine/file/hdr.h"
 #include "engine/file/jpeg.h"
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
@@ -9,6 +11,7 @@
 #include <unistd.h>
 
 #define JPEG_LIMIT ((size_t)1 << 28) ///< bytes
+#define FLOATS_LIMIT ((size_t)1 << 29) ///< bytes of an .hdr or .exr
 #define PICTURE_LIMIT ((size_t)1 << (sizeof(size_t) > 4 ? 34 : 31))
 #define HEAD_BYTES ((size_t)65536) // enough to hold the size of the picture
 #define SLACK_BYTES ((size_t)64 << 20) // allowance for everything in a picture file except pixels
@@ -39,6 +42,8 @@ static size_t picture_bound(const glint_bytes *head)
     const uint64_t png = glint_png_raw_bytes(head->data, head->size);
     if (pfm)
         return (size_t)pfm + SLACK_BYTES;
+    if (glint_is_hdr(head->data, head->size) || glint_is_exr(head->data, head->size))
+        return FLOATS_LIMIT;
     if (!png)
         return glint_is_jpeg(head->data, head->size) ? JPEG_LIMIT : 0;
     return png < PICTURE_LIMIT / STORED_TIMES ? (size_t)png * STORED_TIMES + SLACK_BYTES : PICTURE_LIMIT;

@@ -17,7 +17,8 @@ char *glint_draft_place(const char *path);
 /// Reads a whole file, which glint_open_file opens. *out is filled on success and the caller frees its data. More than
 /// `limit` bytes is GLINT_ERR_FORMAT.
 glint_status glint_file_read(const char *path, size_t limit, glint_bytes *out, glint_error *error);
-/// The same for a picture. Reads no more, and takes no more memory, than a .png or .pfm with this beginning can need.
+/// The same for a picture. Reads no more, and takes no more memory, than a .png or .pfm with this beginning can need; of
+/// .jpg, .hdr and .exr a limited number of bytes.
 /// For any other file it returns only the beginning.
 glint_status glint_file_read_picture(const char *path, glint_bytes *out, glint_error *error);
 

@@ -294,6 +294,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, plan->caps ? "soft shadow by caps" : "rays in place of caps", casts_caps);
         one(e, plan->runs[GLINT_STAGE_INDIRECT], plan->indirect.is_sky ? "ambient occlusion" : "indirect light",
             plan->indirect.is_sky ? "scene.ambient_occlusion" : "scene.indirect");
+        one(e, plan->sky, "sky with bright parts", "scene.background: half of the scattered rays are drawn by its brightness");
         shapes(e, "triangles", is_mesh);
         one(e, plan->runs[GLINT_STAGE_RASTER], "scan conversion", "%s: %u triangles",
             plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "faster here than casting rays",

@@ -3,8 +3,11 @@
 
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/file/exr.h"
 #include "engine/file/file.h"
+#include "engine/file/hdr.h"
 #include "engine/file/jpeg.h"
+#include "engine/file/pfm.h"
 #include "engine/file/png.h"
 
 #include <stdlib.h>
@@ -49,6 +52,13 @@ const glint_texture_table *glint_texture_table_of(const glint_texture *texture) 
 
 glint_key glint_texture_key(const glint_texture *texture) { return texture->key; }
 
+/// A picture as it was read: pixel values, or linear floats.
+typedef struct picture {
+    glint_png png;
+    glint_pfm floats; ///< its `values` are NULL: `png` is the picture
+    bool linear; ///< of `png`
+} picture;
+
 // ---- Levels -------------------------------------------------------------------------------------------------------
 
 /// Allocates the texels of the next level. NULL: out of memory.
@@ -70,7 +80,19 @@ static float *decoding(const glint_png *png, bool linear)
     return table;
 }
 
-static bool fill_first(glint_texture *texture, const glint_png *png, bool linear)
+static bool fill_floats(glint_texture *texture, const glint_pfm *floats)
+{
+    const size_t count = (size_t)floats->width * (size_t)floats->height, channels = (size_t)floats->channels;
+    float *to = add_level(texture, (uint32_t)floats->width, (uint32_t)floats->height);
+    for (size_t i = 0; i < count && to; i++, to += 4) {
+        for (size_t c = 0; c < 3; c++)
+            to[c] = floats->values[i * channels + (channels == 3 ? c : 0)];
+        to[3] = 1;
+    }
+    return to != NULL;
+}
+
+static bool fill_codes(glint_texture *texture, const glint_png *png, bool linear)
 {
     const size_t count = (size_t)png->width * (size_t)png->height, channels = (size_t)png->channels;
     const bool gray = channels < 3, alpha = channels == 2 || channels == 4;
@@ -110,9 +132,9 @@ static bool add_half(glint_texture *texture)
     return to != NULL;
 }
 
-static bool fill(glint_texture *texture, const glint_png *png, bool linear)
+static bool fill(glint_texture *texture, const picture *from)
 {
-    bool done = fill_first(texture, png, linear);
+    bool done = from->floats.values ? fill_floats(texture, &from->floats) : fill_codes(texture, &from->png, from->linear);
     const glint_texture_level *last = texture->levels;
     while (done && (last->width > 1 || last->height > 1)) {
         done = add_half(texture);
@@ -128,9 +150,8 @@ static const struct {
     size_t at;
     const char *begin, *kind;
 } OTHERS[] = { { 0, "GIF8", "GIF" },       { 0, "BM", "BMP" },          { 0, "II*", "TIFF" },     { 0, "MM", "TIFF" },
-               { 8, "WEBP", "WebP" },      { 0, "DDS ", "DDS" },        { 0, "8BPS", "Photoshop" }, { 0, "v/1\1", "OpenEXR" },
-               { 0, "#?", "Radiance HDR" }, { 4, "jP  ", "JPEG 2000" },  { 4, "ftypavif", "AVIF" },  { 4, "ftyphei", "HEIF" },
-               { 0, "PF", "PFM" },         { 0, "<", "SVG or another XML" }, { 0, "qoif", "QOI" } };
+               { 8, "WEBP", "WebP" },      { 0, "DDS ", "DDS" },        { 0, "8BPS", "Photoshop" },
+               { 4, "jP  ", "JPEG 2000" },  { 4, "ftypavif", "AVIF" },  { 4, "ftyphei", "HEIF" }, { 0, "<", "SVG or another XML" }, { 0, "qoif", "QOI" } };
 
 /// Refuses a picture of another format, and names the format.
 static glint_status refuse_other(const glint_bytes *bytes, glint_error *error)
@@ -138,17 +159,51 @@ static glint_status refuse_other(const glint_bytes *bytes, glint_error *error)
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         const size_t length = strlen(OTHERS[i].begin);
         if (bytes->size >= OTHERS[i].at + length && memcmp(bytes->data + OTHERS[i].at, OTHERS[i].begin, length) == 0)
-            return glint_fail(error, GLINT_ERR_FORMAT, "is %s; textures are .png or .jpg", OTHERS[i].kind);
+            return glint_fail(error, GLINT_ERR_FORMAT, "is %s; textures are .png, .jpg, .hdr, .exr or .pfm", OTHERS[i].kind);
     }
     return GLINT_OK;
 }
 
-static glint_status decode(const glint_bytes *bytes, glint_png *png, bool *linear, glint_error *error)
+/// Checks the values of a float picture. A program's light is refused above GLINT_REFLECTANCE_MAX.
+static glint_status check_floats(const glint_pfm *floats, glint_error *error)
+{
+    const size_t row = (size_t)floats->width * (size_t)floats->channels, count = row * (size_t)floats->height;
+    if (count > TEXELS_MAX * (size_t)floats->channels)
+        return glint_fail(error, GLINT_ERR_FORMAT, "a picture of at most %zu pixels expected, got %d x %d", TEXELS_MAX,
+                          floats->width, floats->height);
+    for (size_t i = 0; i < count; i++)
+        if (!(floats->values[i] >= 0 && (double)floats->values[i] <= GLINT_REFLECTANCE_MAX))
+            return glint_fail(error, GLINT_ERR_FORMAT, "pixel %zu, %zu: light of 0 .. 1e30 expected, got %g",
+                              i % row / (size_t)floats->channels, i / row, (double)floats->values[i]);
+    return GLINT_OK;
+}
+
+/// Decodes a picture of floats. *known is whether the bytes begin like one.
+static glint_status decode_floats(const glint_bytes *bytes, glint_pfm *out, bool *known, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    *known = true;
+    if (glint_is_hdr(bytes->data, bytes->size))
+        status = glint_hdr_decode(bytes->data, bytes->size, TEXELS_MAX, out, error);
+    else if (glint_is_exr(bytes->data, bytes->size))
+        status = glint_exr_decode(bytes, TEXELS_MAX, out, error);
+    else if (glint_pfm_bytes(bytes->data, bytes->size))
+        status = glint_pfm_decode(bytes->data, bytes->size, out, error);
+    else
+        *known = false;
+    return status || !*known ? status : check_floats(out, error);
+}
+
+static glint_status decode(const glint_bytes *bytes, picture *out, glint_error *error)
 {
     glint_png_head head;
+    bool known;
     if (glint_is_jpeg(bytes->data, bytes->size))
-        return glint_jpeg_decode(bytes->data, bytes->size, TEXELS_MAX, png, error);
-    glint_status status = refuse_other(bytes, error);
+        return glint_jpeg_decode(bytes->data, bytes->size, TEXELS_MAX, &out->png, error);
+    glint_status status = decode_floats(bytes, &out->floats, &known, error);
+    if (status || known)
+        return status;
+    status = refuse_other(bytes, error);
     if (!status)
         status = glint_png_scan(bytes->data, bytes->size, &head, NULL, NULL, error);
     if (status)
@@ -156,8 +211,8 @@ static glint_status decode(const glint_bytes *bytes, glint_png *png, bool *linea
     if ((size_t)head.width * (size_t)head.height > TEXELS_MAX)
         return glint_fail(error, GLINT_ERR_FORMAT, "a picture of at most %zu pixels expected, got %d x %d", TEXELS_MAX,
                           head.width, head.height);
-    *linear = *linear || head.transfer == GLINT_TRANSFER_LINEAR;
-    return glint_png_decode(bytes->data, bytes->size, png, error);
+    out->linear = out->linear || head.transfer == GLINT_TRANSFER_LINEAR;
+    return glint_png_decode(bytes->data, bytes->size, &out->png, error);
 }
 
 static glint_status copy_codes(const glint_texture_desc *desc, glint_png *png, glint_error *error)
@@ -171,16 +226,16 @@ static glint_status copy_codes(const glint_texture_desc *desc, glint_png *png, g
     return GLINT_OK;
 }
 
-static glint_status read_picture(const glint_texture_desc *desc, glint_png *png, bool *linear, glint_error *error)
+static glint_status read_picture(const glint_texture_desc *desc, picture *out, glint_error *error)
 {
     glint_bytes bytes = { 0 };
     glint_error inner;
     if (!desc->path)
-        return copy_codes(desc, png, error);
+        return copy_codes(desc, &out->png, error);
     glint_status status = glint_file_read_picture(desc->path, &bytes, error);
     if (status)
         return status;
-    status = decode(&bytes, png, linear, &inner);
+    status = decode(&bytes, out, &inner);
     free(bytes.data);
     return status ? glint_fail(error, status, "%.300s: %.200s", desc->path, inner.message) : GLINT_OK;
 }
@@ -212,27 +267,25 @@ glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture 
 {
     GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    glint_png png = { 0 };
-    bool linear = desc->linear;
+    picture from = { .linear = desc->linear };
     glint_status status = check(desc, error);
     if (!status)
-        status = read_picture(desc, &png, &linear, error);
-    if (status)
-        return status;
-    glint_texture *texture = calloc(1, sizeof *texture);
+        status = read_picture(desc, &from, error);
+    glint_texture *texture = status ? NULL : calloc(1, sizeof *texture);
     if (texture) {
         texture->references = 1;
         texture->table =
             (glint_texture_table) { .levels = texture->levels, .wrap = desc->wrap, .filter = desc->filter };
     }
-    if (texture && fill(texture, &png, linear)) {
+    if (texture && fill(texture, &from)) {
         texture->key = key_of(texture);
         *out = texture;
-    } else {
+    } else if (!status) {
         glint_texture_release(texture);
         status = glint_fail_nomem(error);
     }
-    free(png.codes);
+    free(from.png.codes);
+    free(from.floats.values);
     return status;
 }
 

@@ -1,4 +1,4 @@
--- Skies with a small bright part, which indirect light samples by its brightness: closed forms of the light on a
+-- Skies with a small bright part, which indirect light samples by its brightness, and the files that hold such skies: closed forms of the light on a
 -- plane, the shadow of a ball, many random directions, noise, a bound for every pixel, and identical pictures in every
 -- configuration.
 local tally = dofile "tests/lua/tally.lua"
@@ -116,6 +116,167 @@ function tests.a_ball_shades_the_plane()
   check(seen >= 3, "%d points in the soft edge", seen)
 end
 
+-- ---- Files of floats ------------------------------------------------------------------------------------------------
+
+local name = os.tmpname()
+
+local function write(extension, bytes)
+  local file <close> = assert(io.open(name .. extension, "wb"))
+  file:write(bytes)
+  return name .. extension
+end
+
+-- The texel of column x and row y, 0 at the top left, of a picture of 8 x 4 texels.
+local function texel(texture, x, y)
+  local color = texture:evaluate { uv = { (x + 0.5) / 8, 1 - (y + 0.5) / 4 } }
+  return color.x, color.y, color.z
+end
+
+-- Four bytes of a texel: red (x + 16) / 256 * 2^y, green 0.5 * 2^y, blue 0.
+local function rgbe(x, y) return x + 16, 128, 0, 128 + y end
+
+local HEAD <const> = "#?RADIANCE\n# made by a test\nFORMAT=32-bit_rle_rgbe\n"
+
+-- Lines of texels: `at(i, k)` gives column and row of texel i in line k.
+local function flat(lines, texels, at)
+  local out = {}
+  for k = 0, lines - 1 do
+    for i = 0, texels - 1 do out[#out + 1] = string.char(rgbe(at(i, k))) end
+  end
+  return table.concat(out)
+end
+
+-- The same with the runs of Radiance 2.0: literals of red, runs of the other bytes.
+local function runs()
+  local out = {}
+  for y = 0, 3 do
+    out[#out + 1] = "\2\2\0\8\8"
+    for x = 0, 7 do out[#out + 1] = string.char(x + 16) end
+    out[#out + 1] = string.char(128 + 8, 128, 128 + 3, 0, 5, 0, 0, 0, 0, 0, 128 + 8, 128 + y)
+  end
+  return table.concat(out)
+end
+
+local function is_ramp(path, factor, what)
+  local good, texture = pcall(glint.texture, { file = path })
+  check(good, "%s: %s", what, texture)
+  for y = 0, good and 3 or -1 do
+    for x = 0, 7 do
+      local r, g, b = texel(texture, x, y)
+      check(r == factor * (x + 16) / 256 * 2 ^ y and g == factor * 0.5 * 2 ^ y and b == 0, "%s: texel %d, %d: %g, %g, %g",
+        what, x, y, r, g, b)
+    end
+  end
+end
+
+function tests.radiance_pictures()
+  local function plain(i, k) return i, k end
+  is_ramp(write(".hdr", HEAD .. "\n-Y 4 +X 8\n" .. flat(4, 8, plain)), 1, "flat")
+  is_ramp(write(".hdr", HEAD .. "\n-Y 4 +X 8\n" .. runs()), 1, "runs")
+  is_ramp(write(".hdr", HEAD .. "EXPOSURE=4\nEXPOSURE=2.0\nCOLORCORR=0.5 0.5 0.5\n\n-Y 4 +X 8\n" .. runs()), 0.25, "EXPOSURE")
+  for size, at in pairs {
+    ["+Y 4 +X 8"] = function(i, k) return i, 3 - k end, ["-Y 4 -X 8"] = function(i, k) return 7 - i, k end,
+    ["+X 8 -Y 4"] = function(i, k) return k, i end, ["-X 8 +Y 4"] = function(i, k) return 7 - k, 3 - i end,
+  } do
+    local lines = size:find "^.X" and 8 or 4
+    is_ramp(write(".hdr", HEAD .. "\n" .. size .. "\n" .. flat(lines, 32 // lines, at)), 1, size)
+  end
+  local old = glint.texture { file = write(".hdr", "#?RGBE\n\n-Y 1 +X 8\n\64\0\0\128\1\1\1\6\0\64\0\128") }
+  check(texel(old, 6, 0) == 0.25 and select(2, texel(old, 7, 0)) == 0.25, "a run of the first kind")
+  local long = glint.texture { file = write(".hdr", "#?RGBE\n\n-Y 1 +X 601\n\64\0\0\128\1\1\1\88\1\1\1\2") }
+  check(long:evaluate({ uv = { 0.99, 0.5 } }).x == 0.25, "a run of two digits")
+end
+
+function tests.broken_radiance_pictures()
+  local whole = HEAD .. "\n-Y 4 +X 8\n" .. runs()
+  for length = 2, #whole - 1, 3 do
+    tally.raises(".hdr: ", glint.texture, { file = write(".hdr", whole:sub(1, length)) })
+  end
+  for bytes, message in pairs {
+    ["#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n1234"] = "FORMAT: 32-bit_rle_rgbe expected, got 32-bit_rle_xyze",
+    ["#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n1234"] = "EXPOSURE and COLORCORR: numbers > 0 expected",
+    ["#?RADIANCE\n\n-Y 65535 +X 65535\n1234"] = "a picture of at most 33554432 pixels expected, got 65535 x 65535",
+    ["#?RADIANCE\n\n-Y 0 +X 5\n1234"] = "a size such as -Y 512 +X 1024 expected, got -Y 0 +X 5",
+    ["#?RADIANCE\n\n-Y 2 +Y 5\n1234"] = "a size such as -Y 512 +X 1024 expected, got -Y 2 +Y 5",
+    ["#?RADIANCE\n\n-Y 1 +X 2\n\1\1\1\1\1\2\3\4"] = "line 1 of 1 cannot be read",
+    ["#?RADIANCE\n\n-Y 1 +X 2\n\3\2\1\128\1\1\1\9"] = "line 1 of 1 cannot be read",
+    ["#?RADIANCE\n\n-Y 1 +X 8\n\2\2\0\8\137\1"] = "line 1 of 1 cannot be read",
+    ["#?RADIANCE\n\n-Y 1 +X 8\n\2\2\0\8\0\1"] = "line 1 of 1 cannot be read",
+    ["#?RADIANCE\nEXPOSURE=1e-30\n\n-Y 1 +X 1\n\255\0\0\255"] = "pixel 0, 0: light of 0 .. 1e30 expected, got inf",
+  } do
+    tally.raises(".hdr: ", glint.texture, { file = write(".hdr", bytes) })
+    tally.raises(message, glint.texture, { file = write(".hdr", bytes) })
+  end
+  math.randomseed(7)
+  for _ = 1, 300 do -- no damage may crash
+    local at = math.random(#whole)
+    pcall(glint.texture, { file = write(".hdr", whole:sub(1, at - 1) .. string.char(math.random(0, 255)) .. whole:sub(at + 1)) })
+  end
+end
+
+function tests.float_maps()
+  local floats = {}
+  for y = 3, 0, -1 do
+    for x = 0, 7 do floats[#floats + 1] = ("<fff"):pack((x + 16) / 256 * 2 ^ y, 0.5 * 2 ^ y, 0) end
+  end
+  local pixels = table.concat(floats)
+  is_ramp(write(".pfm", "PF\n8 4\n-1.0\n" .. pixels), 1, ".pfm")
+  for _, wrong in ipairs { -1, 0 / 0, math.huge, 2e30 } do
+    local bad = pixels:sub(1, 12 * 10) .. ("<f"):pack(wrong) .. pixels:sub(12 * 10 + 5)
+    tally.raises(".pfm: pixel 2, 2: light of 0 .. 1e30 expected, got ", glint.texture, { file = write(".pfm", "PF\n8 4\n-1.0\n" .. bad) })
+  end
+end
+
+-- A picture that glint wrote, whole and damaged.
+function tests.openexr_pictures()
+  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } },
+    background = glint.pattern(function(_, s) return { s.uv.u, 9 * s.uv.v, 0.25 } end) }
+  local image = scene:render { width = 40, height = 20, output = "none" }
+  local good, message = pcall(image.save, image, name .. ".exr")
+  if not good then
+    check(tostring(message):find("OpenEXR", 1, true), "without the library: %s", message)
+    return
+  end
+  local texture = glint.texture { file = name .. ".exr" }
+  for y = 0, 19 do
+    for x = 0, 39 do
+      local color = texture:evaluate { uv = { (x + 0.5) / 40, 1 - (y + 0.5) / 20 } }
+      local r, g, b = image:pixel(x, y)
+      near(color.x, r, 1e-6, "red of an .exr")
+      near(color.y, g, 1e-5, "green of an .exr")
+      near(color.z, b, 0, "blue of an .exr")
+    end
+  end
+  local file <close> = assert(io.open(name .. ".exr", "rb"))
+  local whole = file:read "a"
+  for length = 4, #whole - 1, #whole // 40 do
+    tally.raises(".exr: not a whole OpenEXR file", glint.texture, { file = write(".exr", whole:sub(1, length)) })
+  end
+  for _ = 1, 200 do
+    local at = math.random(5, #whole)
+    pcall(glint.texture, { file = write(".exr", whole:sub(1, at - 1) .. string.char(math.random(0, 255)) .. whole:sub(at + 1)) })
+  end
+end
+
+-- A black sky with one texel of 10^4: the tent of the texel is two texels wide.
+function tests.one_texel_lights_a_plane()
+  local w, h, x, y = 64, 32, 20, 9
+  local black = ("\0"):rep(4)
+  local bytes = black:rep(y * w + x) .. string.char(156, 156, 156, 142) .. black:rep((h - y) * w - x - 1)
+  local sky = glint.texture { file = write(".hdr", HEAD .. ("\n-Y %d +X %d\n"):format(h, w) .. bytes) }
+  local bright, a, sum = 156 * 2 ^ 6, math.pi / h, 0
+  for k = 1, 2000 do
+    local from = (k - 0.5) / 1000 - 1 -- texels from the middle
+    local angle = (y + 0.5 + from) * a
+    sum = sum + (1 - math.abs(from)) * math.sin(angle) * math.cos(angle) * a / 1000
+  end
+  local want = KD * bright * 2 / w * sum
+  local mean, deviation, most = statistics(look(sky, 64))
+  near(mean / want, 1, 0.01, "a texel's light")
+  check(deviation < 0.05, "its noise: %.3f", deviation)
+  check(most < 1.2 * want, "a pixel of %.3f of the mean", most / want)
+end
+
 -- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
@@ -163,11 +324,11 @@ return glint.animation { scene = scene, frames = 3, samples = 2, frame = functio
       { "GLINT_ISA=avx2", "-f 3" }, { "GLINT_ISA=avx512", "-f 3" },
     } do
       local other, said = read(way[1], script, way[2] .. " --precision " .. precision)
-      local name = ("%s %s %s"):format(precision, way[1], way[2])
+      local what = ("%s %s %s"):format(precision, way[1], way[2])
       if not other and said:find("this machine lacks", 1, true) then
-        print("# skip " .. name)
+        print("# skip " .. what)
       else
-        check(other == usual, "the same picture: %s %s", name, other and "" or said)
+        check(other == usual, "the same picture: %s %s", what, other and "" or said)
       end
     end
   end
@@ -175,4 +336,5 @@ return glint.animation { scene = scene, frames = 3, samples = 2, frame = functio
 end
 
 tally.run(tests)
+for _, extension in ipairs { "", ".hdr", ".pfm", ".exr" } do os.remove(name .. extension) end
 tally.finish()
