@@ -165,7 +165,7 @@ static void check_sky(glint_program *program, int width, double integral, double
     const double estimate = estimate_of(plan, 1 << 12, &most);
     if (!(fabs(estimate / integral - 1) < relative))
         fail_msg("%.9g instead of %.9g", estimate, integral);
-    if (!(most < 6 * integral)) // no direction weighs more than its cell explains
+    if (!(most < 8 * integral)) // no direction weighs more than its cell explains
         fail_msg("a direction weighs %.9g of %.9g", most, integral);
     glint_plan_destroy(plan);
 }

@@ -13,8 +13,9 @@
 #define WIDTH_LEAST 1024 ///< cells of a third of a degree, so that the sun of a formula covers a corner
 #define WIDTH_MOST 2048
 #define WEIGHT_MOST 0x7fffffff ///< the sum over all cells stays below 2^53, exact in double
-#define SPREAD (1.0 / 16) ///< a cell's weight is at least this share of its neighbours' brightest corner, so that no
-    ///< part of a spot between corners is missed
+#define SPREAD (1.0 / 16) ///< a corner counts at least as this share of its brightest neighbour, so that no part of a
+    ///< spot between corners is missed
+#define FLOOR (1.0 / 4) ///< smallest density in a cell, as a share of its brightest corner's
 /// smallest mean square of the brightness, divided by its squared mean, with which the table reduces noise
 #define UNEVEN 2.0
 
@@ -26,6 +27,7 @@ struct glint_sky {
     uint32_t width, height; ///< cells; the height is half the width
     double *level; ///< cosine of the angle to +y of the edges between rows, from 1 to -1
     double (*edge)[2]; ///< sine and cosine of the longitude of the edges between columns: from -z round over -x, +z
+    float *corner; ///< brightness of the corners, edge by edge from the top, as it counts
     uint64_t *rows; ///< sum of the weights of the rows before each row, and of all
     uint64_t *cells; ///< for each row, the sum of the weights of its cells up to each cell
 };
@@ -57,11 +59,38 @@ static uint32_t choose(const uint64_t *sums, uint32_t count, double u, double *r
     return i;
 }
 
+/// Loads the densities, up to a factor, at the corners of a cell: upper left, upper right, lower left, lower right.
+/// Returns their mean.
+static double load_corners(const glint_sky *sky, uint32_t j, uint32_t i, double corner[4])
+{
+    const float *upper = sky->corner + (size_t)j * sky->width, *lower = upper + sky->width;
+    const uint32_t right = i + 1 < sky->width ? i + 1 : 0;
+    corner[0] = (double)upper[i];
+    corner[1] = (double)upper[right];
+    corner[2] = (double)lower[i];
+    corner[3] = (double)lower[right];
+    const double least = FLOOR * fmax(fmax(corner[0], corner[1]), fmax(corner[2], corner[3]));
+    for (int k = 0; k < 4; k++)
+        corner[k] = fmax(corner[k], least);
+    return ((corner[0] + corner[1]) + (corner[2] + corner[3])) / 4;
+}
+
+/// Maps u, 0 .. 1, so that its density goes from `from` to `to` in a line; both are > 0.
+static double bend(double u, double from, double to)
+{
+    return fmin(u * (from + to) / (from + sqrt(from * from + u * (to * to - from * from))), 1);
+}
+
+static double mixed(double t, double a, double b) { return a + t * (b - a); }
+
 void glint_sky_draw(const glint_sky *sky, const double u[2], double direction[3])
 {
-    double down, along;
+    double down, along, corner[4];
     const uint32_t j = choose(sky->rows + 1, sky->height, u[1], &down);
     const uint32_t i = choose(sky->cells + (size_t)j * sky->width, sky->width, u[0], &along);
+    load_corners(sky, j, i, corner);
+    down = bend(down, corner[0] + corner[1], corner[2] + corner[3]);
+    along = bend(along, mixed(down, corner[0], corner[2]), mixed(down, corner[1], corner[3]));
     const double y = sky->level[j] + down * (sky->level[j + 1] - sky->level[j]);
     const double radius = sqrt(fmax(1 - y * y, 0)), longitude = ((i + along) / sky->width - 0.5) * TURN;
     direction[0] = radius * glint_sin(longitude);
@@ -104,9 +133,16 @@ double glint_sky_density(const glint_sky *sky, const double direction[3])
 {
     const uint32_t j = find_row(sky, direction[1]), i = find_column(sky, direction[0], direction[2]);
     const uint64_t *cells = sky->cells + (size_t)j * sky->width;
+    const double x = direction[0], z = direction[2], radius = sqrt(x * x + z * z);
+    const double sine = radius > 0 ? (x * sky->edge[i][1] + z * sky->edge[i][0]) / radius : 0; // of a small angle
+    const double along = fmin(fmax((sine + sine * sine * sine / 6) * (sky->width / TURN), 0), 1);
+    const double down = fmin(fmax((sky->level[j] - direction[1]) / (sky->level[j] - sky->level[j + 1]), 0), 1);
+    double corner[4];
+    const double mean = load_corners(sky, j, i, corner);
+    const double here = mixed(down, mixed(along, corner[0], corner[1]), mixed(along, corner[2], corner[3]));
     const double weight = (double)(cells[i] - (i ? cells[i - 1] : 0));
     const double angle = (sky->level[j] - sky->level[j + 1]) * (TURN / sky->width);
-    return weight / (double)sky->rows[sky->height] / angle;
+    return mean > 0 ? weight / (double)sky->rows[sky->height] / angle * (here / mean) : 0;
 }
 
 // ---- Making -------------------------------------------------------------------------------------------------------
@@ -115,6 +151,7 @@ static void destroy(glint_sky *sky)
 {
     free(sky->level);
     free(sky->edge);
+    free(sky->corner);
     free(sky->rows);
     free(sky->cells);
     free(sky);
@@ -153,9 +190,10 @@ static glint_sky *new_sky(uint32_t width)
     sky->height = height;
     sky->level = glint_alloc(height + 1, sizeof *sky->level);
     sky->edge = glint_alloc(width + 1, sizeof *sky->edge);
+    sky->corner = glint_alloc_large((size_t)width * (height + 1), sizeof *sky->corner);
     sky->rows = glint_alloc(height + 1, sizeof *sky->rows);
     sky->cells = glint_alloc_large((size_t)width * height, sizeof *sky->cells);
-    if (!sky->level || !sky->edge || !sky->rows || !sky->cells) {
+    if (!sky->level || !sky->edge || !sky->corner || !sky->rows || !sky->cells) {
         destroy(sky);
         return NULL;
     }
@@ -200,27 +238,33 @@ static bool find_brightness(const glint_sky *sky, const glint_plan *plan, const 
     return environment;
 }
 
-/// Returns the weight of a cell: the mean brightness of its corners, or a share of the brightest neighbouring corner,
-/// times its solid angle in units of a column's.
-static double weight_of(const glint_sky *sky, const double *brightness, uint32_t j, uint32_t i)
+/// Fills the brightness of the corners as it counts.
+static void fill_corners(glint_sky *sky, const double *brightness)
 {
-    double sum = 0, most = 0;
-    for (uint32_t y = j ? j - 1 : 0; y <= j + 2 && y <= sky->height; y++)
-        for (uint32_t x = 0; x < 4; x++) {
-            const double here = brightness[(size_t)y * sky->width + (i + sky->width - 1 + x) % sky->width];
-            most = fmax(most, here);
-            sum += (y == j || y == j + 1) && (x == 1 || x == 2) ? here : 0;
+    for (uint32_t j = 0; j <= sky->height; j++)
+        for (uint32_t i = 0; i < sky->width; i++) {
+            double most = 0;
+            for (uint32_t y = j ? j - 1 : 0; y <= j + 1 && y <= sky->height; y++)
+                for (uint32_t x = 0; x < 3; x++)
+                    most = fmax(most, brightness[(size_t)y * sky->width + (i + sky->width - 1 + x) % sky->width]);
+            sky->corner[(size_t)j * sky->width + i] = (float)fmax(brightness[(size_t)j * sky->width + i], most * SPREAD);
         }
-    return fmax(sum / 4, most * SPREAD) * (sky->level[j] - sky->level[j + 1]);
+}
+
+/// Returns the weight of a cell: its mean density times its solid angle in units of a column's.
+static double weight_of(const glint_sky *sky, uint32_t j, uint32_t i)
+{
+    double corner[4];
+    return load_corners(sky, j, i, corner) * (sky->level[j] - sky->level[j + 1]);
 }
 
 /// Returns the largest weight, and whether the weights are so even that drawing by them would not reduce noise.
-static double survey(const glint_sky *sky, const double *brightness, bool *even)
+static double survey(const glint_sky *sky, bool *even)
 {
     double most = 0, sum = 0, square = 0;
     for (uint32_t j = 0; j < sky->height; j++)
         for (uint32_t i = 0; i < sky->width; i++) {
-            const double weight = weight_of(sky, brightness, j, i), angle = sky->level[j] - sky->level[j + 1];
+            const double weight = weight_of(sky, j, i), angle = sky->level[j] - sky->level[j + 1];
             most = fmax(most, weight);
             sum += weight;
             square += weight * (weight / angle);
@@ -232,11 +276,12 @@ static double survey(const glint_sky *sky, const double *brightness, bool *even)
 /// Fills the sums.
 static void fill(glint_sky *sky, const double *brightness)
 {
-    const double most = survey(sky, brightness, &sky->even);
+    fill_corners(sky, brightness);
+    const double most = survey(sky, &sky->even);
     for (uint32_t j = 0; j < sky->height && !sky->even; j++) {
         uint64_t sum = 0;
         for (uint32_t i = 0; i < sky->width; i++) {
-            const double weight = weight_of(sky, brightness, j, i) / most;
+            const double weight = weight_of(sky, j, i) / most;
             sum += weight > 0 ? 1 + (uint64_t)(weight * (WEIGHT_MOST - 1)) : 0;
             sky->cells[(size_t)j * sky->width + i] = sum;
         }

@@ -2,9 +2,9 @@
 ///
 /// The sphere of directions is divided into cells of equal width in longitude and equal height in latitude. A cell's
 /// weight is the brightness at its corners times its solid angle, so a cell is drawn about as often as its share of
-/// the sky's light; within a cell all directions are equally likely.
+/// the sky's light; within a cell the density is interpolated between its corners.
 ///
-/// Weights are whole numbers. So sums are exact, and the density is exactly the density of the drawn directions.
+/// Weights are whole numbers, so sums are exact.
 #ifndef GLINT_ENVIRONMENT_SKY_H
 #define GLINT_ENVIRONMENT_SKY_H
 
