@@ -43,6 +43,7 @@ typedef struct glint_stages {
         void (*bounce)(const glint_bounce_args *args);
         void (*vertex)(const glint_vertex_args *args);
         void (*scatter)(const glint_scatter_args *args);
+        void (*spread)(const glint_spread_args *args);
         void (*raster)(const glint_raster_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*program)(const glint_program_args *args);

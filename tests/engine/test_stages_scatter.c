@@ -51,6 +51,59 @@ static void test_scatter(void **state)
     run_cases(CASES, 17000, scatter_case);
 }
 
+/// Draws facets of wide and narrow distributions, seen from above to grazing.
+static void spread_case(int precision, bool odd)
+{
+    const uint32_t groups = 1 + below(6), n = groups * GLINT_GROUP;
+    const array_kind kind = real_kind(precision);
+    const void *normal[3], *eye[3], *disk[2];
+    const void *alpha = input(kind, n);
+    input3(normal, kind, n);
+    input3(eye, kind, n);
+    for (int k = 0; k < 2; k++)
+        disk[k] = input(kind, n);
+    for (uint32_t i = 0; i < n; i++) {
+        double up[3], v[3];
+        const double radius = sqrt(between(0, 1)), angle = between(0, 6.3);
+        random_unit(up);
+        random_unit(v);
+        for (int k = 0; k < 3 && one_in(5); k++)
+            v[k] = up[k];
+        for (int k = 0; k < 3; k++) {
+            up[k] = maybe_odd(odd, up[k]);
+            v[k] = maybe_odd(odd, v[k]);
+        }
+        put3(normal, precision, i, up);
+        put3(eye, precision, i, v);
+        put(alpha, precision, i, one_in(4) ? 1e-18 : power_of_ten(-8, 0));
+        put(disk[0], precision, i, radius * cos(angle));
+        put(disk[1], precision, i, radius * sin(angle));
+    }
+    glint_spread_args args = { .group_count = groups, .wanted = masks(groups), .alpha = alpha, .disk = { disk[0], disk[1] } };
+    memcpy(args.normal, normal, sizeof normal);
+    memcpy(args.eye, eye, sizeof eye);
+    FOR_EACH_TESTED
+    {
+        void *out[5];
+        for (int k = 0; k < 5; k++)
+            out[k] = output("spread", kind, n);
+        memcpy(args.direction, out, sizeof args.direction);
+        args.cosine = out[3];
+        args.weight = out[4];
+        geometry(precision)->spread(&args);
+        for (uint32_t i = 0; i < n; i++) // the other lanes may hold anything
+            for (int k = 0; k < 5 && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
+                put(out[k], precision, i, 0);
+        compare_outputs("spread");
+    }
+}
+
+static void test_spread(void **state)
+{
+    (void)state;
+    run_cases(CASES, 23000, spread_case);
+}
+
 /// Adds the background to nonzero sums where rays missed, and leaves the others unchanged.
 static void sky_case(int precision, bool odd)
 {
@@ -213,7 +266,7 @@ int main(void)
 {
     find_tested();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scatter),  cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_means),
+        cmocka_unit_test(test_scatter),  cmocka_unit_test(test_spread),       cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_means),
         cmocka_unit_test(test_evenness), cmocka_unit_test(test_independence), cmocka_unit_test(test_sky),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

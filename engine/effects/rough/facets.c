@@ -22,7 +22,6 @@
 typedef struct view {
     double axis[3][3]; ///< two tangents and the normal on the ray's side
     double to_eye[3]; ///< unit vector against the ray, along these axes; the last component is >= 0
-    double direction[3]; ///< unit direction of the ray
     double alpha;
     bool beckmann;
 } view;
@@ -43,18 +42,24 @@ static void find_tangents(double axis[3][3])
     vec_copy(axis[1], other);
 }
 
+void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3])
+{
+    for (int c = 0; c < 3; c++)
+        to_eye[c] = -glint_tile_direction(tile, plan->desc.precision, c, i);
+    vec_normalize(to_eye, to_eye);
+    load_normal(tile, plan, i, true, normal);
+    if (glint_plan_bumps(plan) && !(vec_dot(normal, to_eye) > 0))
+        load_normal(tile, plan, i, false, normal);
+}
+
 static view look(const glint_tile *tile, const glint_plan *plan, uint32_t i, const glint_bounce_material *m)
 {
     view v = { .alpha = m->alpha, .beckmann = m->beckmann };
-    for (int c = 0; c < 3; c++)
-        v.direction[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
-    vec_normalize(v.direction, v.direction);
-    load_normal(tile, plan, i, true, v.axis[2]);
-    if (glint_plan_bumps(plan) && !(vec_dot(v.axis[2], v.direction) < 0))
-        load_normal(tile, plan, i, false, v.axis[2]);
+    double to_eye[3];
+    glint_rough_view(tile, plan, i, v.axis[2], to_eye);
     find_tangents(v.axis);
     for (int k = 0; k < 3; k++)
-        v.to_eye[k] = -vec_dot(v.axis[k], v.direction);
+        v.to_eye[k] = vec_dot(v.axis[k], to_eye);
     v.to_eye[2] = fmin(fmax(v.to_eye[2], 0), 1);
     return v;
 }

@@ -16,13 +16,18 @@
 struct glint_rough {
     struct glint_indirect *paths;
     double share[GLINT_TILE_SAMPLES]; ///< share of the paths of each point that are reflected
+    // points that only reflect, from GGX's facets: the stage spread draws for all of them at once
+    uint16_t plain[GLINT_TILE_GROUPS];
+    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES], eye[3][GLINT_TILE_SAMPLES], alpha[GLINT_TILE_SAMPLES]; ///< real
+    _Alignas(64) double cosine[GLINT_TILE_SAMPLES], unmasked[GLINT_TILE_SAMPLES]; ///< real: results of spread
+    double weight[3][GLINT_TILE_SAMPLES], f0[3][GLINT_TILE_SAMPLES]; ///< of a ray at full reflectance; Schlick's f0
     glint_plan plan; ///< the frame's plan, with the numbers of samples and bounces of these paths
     glint_tile_frame frame;
 };
 
 static void *create(const glint_plan *plan)
 {
-    struct glint_rough *rough = malloc(sizeof *rough);
+    struct glint_rough *rough = aligned_alloc(_Alignof(struct glint_rough), sizeof *rough);
     if (!rough)
         return NULL;
     rough->paths = glint_indirect_create(plan);
@@ -46,6 +51,36 @@ static bool spreads(const glint_tile *seen, const glint_plan *plan, const glint_
     return glint_is_spreading(&plan->bouncing[seen->surface.material[i]]) && (!from || from->rays->depth[from->ray_of[i]] < plan->desc.max_depth);
 }
 
+/// Returns whether the stage spread serves the surface of sample i.
+static bool is_plain(const glint_tile *seen, const glint_plan *plan, uint32_t i)
+{
+    const uint32_t material = seen->surface.material[i];
+    const glint_bounce_material *m = &plan->bouncing[material];
+    return !m->transmits && !m->beckmann && !m->fresnel && !(glint_plan_bumps(plan) && plan->patterns->of[material].slope);
+}
+
+/// Fills the arguments of spread for point i, and the parts of its rays that are equal for all paths.
+static void note_plain(struct glint_rough *rough, const glint_tile *seen, uint32_t i, glint_ray *ray)
+{
+    const glint_plan *plan = &rough->plan;
+    glint_bounce_material buffer;
+    const glint_bounce_material *m = glint_tile_bouncing(seen, plan, i, &buffer);
+    double normal[3], eye[3];
+    glint_rough_view(seen, plan, i, normal, eye);
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(rough->normal[c], plan->desc.precision, i, normal[c]);
+        glint_real_put(rough->eye[c], plan->desc.precision, i, eye[c]);
+        rough->weight[c][i] = m->mirror[c] * m->specular[c];
+        rough->f0[c][i] = m->schlick ? m->f0[c] : 1;
+    }
+    glint_real_put(rough->alpha, plan->desc.precision, i, m->alpha);
+    rough->plain[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+    ray->depth++;
+    ray->inward = glint_has_lane(seen->hit.back, i);
+    ray->sight = false;
+    ray->blind = m->facets || ray->scatters > 0;
+}
+
 /// Begins the paths of point i. Returns their number.
 static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, const glint_tile *seen,
                             const glint_batch *from, uint32_t i, glint_pixel_block *block)
@@ -66,6 +101,8 @@ static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, con
     glint_batch_start_ray(from ? from : &rough->paths->batch, seen, &rough->frame, i, &ray);
     if (!from)
         ray.term = GLINT_TERM_MIRROR;
+    if (is_plain(seen, plan, i))
+        note_plain(rough, seen, i, &ray);
     glint_indirect_begin_point(rough->paths, to, plan, i, paths, whole, &ray, block);
     return paths;
 }
@@ -79,6 +116,7 @@ static uint32_t find_points(struct glint_rough *rough, const glint_tile *to, con
     paths->fewest = UINT32_MAX;
     glint_rays_clear(&paths->first, seen->group_count);
     for (uint32_t g = 0; g < seen->group_count; g++) {
+        rough->plain[g] = 0;
         for (unsigned bits = seen->at.hits[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const uint32_t count = spreads(seen, &rough->plan, from, i) ? begin_point(rough, to, seen, from, i, &block) : 0;
@@ -120,6 +158,42 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     glint_rays_put(&paths->first, &rough->plan, i, &ray);
 }
 
+/// Computes the weights of a group's rays by Schlick's reflectance.
+static void weigh(struct glint_rough *rough, uint32_t g)
+{
+    const glint_precision precision = rough->plan.desc.precision;
+    double factor[GLINT_GROUP], schlick[GLINT_GROUP];
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        const double r = 1 - glint_real_at(rough->cosine, precision, g * GLINT_GROUP + i);
+        schlick[i] = (r * r) * (r * r) * r;
+        factor[i] = glint_real_at(rough->unmasked, precision, g * GLINT_GROUP + i);
+    }
+    for (int c = 0; c < 3; c++) {
+        const double *weight = rough->weight[c] + g * GLINT_GROUP, *f0 = rough->f0[c] + g * GLINT_GROUP;
+        const double *start = rough->paths->weight[c] + g * GLINT_GROUP;
+        double *to = rough->paths->first.weight[c] + g * GLINT_GROUP;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            to[i] = glint_weight(start[i] * ((weight[i] * (f0[i] + (1 - f0[i]) * schlick[i])) * factor[i]));
+    }
+}
+
+/// Makes the first rays of the points in `wanted` that the stage spread serves.
+static void begin_plain(struct glint_rough *rough, uint32_t group_count, const uint16_t *wanted)
+{
+    glint_spread_args args = { .group_count = group_count, .wanted = wanted, .alpha = rough->alpha,
+                               .cosine = rough->cosine, .weight = rough->unmasked,
+                               .disk = { rough->paths->direction[0], rough->paths->direction[1] } };
+    for (int c = 0; c < 3; c++) {
+        args.normal[c] = rough->normal[c];
+        args.eye[c] = rough->eye[c];
+        args.direction[c] = rough->paths->first.direction[c];
+    }
+    rough->frame.stages->geometry[rough->plan.desc.precision].spread(&args);
+    for (uint32_t g = 0; g < group_count; g++)
+        if (wanted[g])
+            weigh(rough, g);
+}
+
 /// Makes the first rays of path number `path` of every point. Returns whether there are any.
 static bool begin_paths(struct glint_rough *rough, const glint_tile *seen, const glint_batch *from, uint32_t path, uint64_t number)
 {
@@ -128,8 +202,12 @@ static bool begin_paths(struct glint_rough *rough, const glint_tile *seen, const
     if (!glint_indirect_choose_points(paths, &rough->plan, path, number))
         return false;
     glint_indirect_scatter(&rough->frame, seen->group_count, up, paths->first.active, &paths->first_draws, path, paths->direction);
+    uint16_t plain[GLINT_TILE_GROUPS];
     for (uint32_t g = 0; g < seen->group_count; g++)
-        for (unsigned bits = paths->first.active[g]; bits; bits &= bits - 1) {
+        plain[g] = paths->first.active[g] & rough->plain[g];
+    begin_plain(rough, seen->group_count, plain);
+    for (uint32_t g = 0; g < seen->group_count; g++)
+        for (unsigned bits = paths->first.active[g] & ~(unsigned)rough->plain[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double disk[2];
             for (int c = 0; c < 2; c++)

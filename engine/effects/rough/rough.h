@@ -9,6 +9,9 @@
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                         double share[2]);
 
+/// Finds the normal of sample i on the ray's side, with its bump, and the unit vector against the ray.
+void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3]);
+
 /// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
 /// direction, side, depth, media; multiplies the weight. disk: a point of the unit disk, where equal areas are equally
 /// likely. The weight is 0 where the facet that was drawn sends the ray through the surface, or where another facet

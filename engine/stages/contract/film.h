@@ -1,4 +1,4 @@
-/// The contract of the stages that follow the lights, up to the picture: vertex, bounce, scatter, sky, shade,
+/// The contract of the stages that follow the lights, up to the picture: vertex, bounce, scatter, spread, sky, shade,
 /// resolve, differ, tone. Begin with stages.h.
 #ifndef GLINT_CONTRACT_FILM_H
 #define GLINT_CONTRACT_FILM_H
@@ -58,6 +58,23 @@ typedef struct glint_scatter_args {
 // shares of the light of a uniform sky. The arithmetic: ref/scatter.h: the square is mapped to a disk, and the disk
 // is projected up onto the hemisphere, which gives a cosine distribution, in the orthonormal basis of T. Duff et al.,
 // JCGT 6(1), 2017.
+
+// ---- spread: rays that the facets of GGX's distribution reflect ----
+
+typedef struct glint_spread_args {
+    uint32_t group_count;
+    const uint16_t *wanted; ///< one bit per lane
+    const void *normal[3], *eye[3]; ///< real, unit; eye: against the arriving ray
+    const void *alpha; ///< real, above 0: width of the distribution
+    const void *disk[2]; ///< real: a point of the unit disk
+    void *direction[3]; ///< out, real, of length 1 up to rounding
+    void *cosine; ///< out, real: of the angle between ray and facet
+    void *weight; ///< out, real: G2 / G1, the probability that no other facet is in the way; 0 below the surface
+} glint_spread_args;
+// Groups without a wanted lane are not written. In other groups, lanes that are not wanted are undefined. The
+// arithmetic: ref/spread.h: a point of the disk becomes a cap of the hemisphere of directions from which the facet is
+// seen (J. Dupuy and A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023), in the basis of
+// scatter; G2 is height-correlated.
 
 // ---- sky: the background seen by rays that miss ----
 

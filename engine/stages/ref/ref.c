@@ -209,6 +209,7 @@ static double square_root_double(double x) { return sqrt(x); }
 #include "engine/stages/ref/real.h"
 #include "engine/stages/ref/microfacets.h"
 #include "engine/stages/ref/scatter.h"
+#include "engine/stages/ref/spread.h"
 #include "engine/stages/ref/soft.h"
 #undef REAL
 #undef ROUNDER
@@ -220,6 +221,7 @@ static double square_root_double(double x) { return sqrt(x); }
 #include "engine/stages/ref/real.h"
 #include "engine/stages/ref/microfacets.h"
 #include "engine/stages/ref/scatter.h"
+#include "engine/stages/ref/spread.h"
 #include "engine/stages/ref/soft.h"
 #undef REAL
 #undef ROUNDER
@@ -308,7 +310,8 @@ static void tone(const glint_tone_args *args)
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .raster = raster_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .spread = spread_facets_##real, \
+        .raster = raster_##real, \
         .soft_light = soft_light_##real, \
     }
 

@@ -2,6 +2,7 @@
 #include "engine/stages/shade/bounce.h"
 #include "engine/stages/shade/microfacets.h"
 #include "engine/stages/shade/scatter.h"
+#include "engine/stages/shade/spread.h"
 
 #if GLINT_WITH_FACET
 KERNEL(view, glint_view_args)
@@ -12,4 +13,5 @@ KERNEL(bounce, glint_bounce_args)
 #endif
 #if GLINT_WITH_INDIRECT
 KERNEL(scatter, glint_scatter_args)
+KERNEL(spread, glint_spread_args)
 #endif

@@ -7,6 +7,19 @@
 #include "engine/stages/shade/sequence.h"
 #include "engine/stages/simd/real.h"
 
+/// Computes two tangents to a normal (T. Duff et al., JCGT 6(1), 2017).
+static inline void R(tangents_of)(const vr n[3], vr tangent[3], vr bitangent[3])
+{
+    const vr zero = r_set(0), one = r_set(1), g = r_select(r_le(zero, n[2]), one, r_set(-1));
+    const vr p = r_set(-1) / (g + n[2]), q = (n[0] * n[1]) * p;
+    tangent[0] = one + g * ((n[0] * n[0]) * p);
+    tangent[1] = g * q;
+    tangent[2] = zero - g * n[0];
+    bitangent[0] = q;
+    bitangent[1] = g + (n[1] * n[1]) * p;
+    bitangent[2] = zero - n[1];
+}
+
 /// Maps a point of the unit square to the unit disk: the radius is sqrt(u), the angle 2 pi v.
 static inline void R(disk_point)(vr u, vr v, vr *x, vr *y)
 {
@@ -30,10 +43,9 @@ static inline void R(scatter_lanes)(const glint_scatter_args *args, vr u, vr v, 
     vr n[3], x, y;
     R(load3)(args->normal, at, n);
     R(disk_point)(u, v, &x, &y);
-    const vr h = r_sqrt(r_max(one - u, zero)), g = r_select(r_le(zero, n[2]), one, r_set(-1));
-    const vr p = r_set(-1) / (g + n[2]), q = (n[0] * n[1]) * p;
-    const vr tangent[3] = { one + g * ((n[0] * n[0]) * p), g * q, zero - g * n[0] };
-    const vr bitangent[3] = { q, g + (n[1] * n[1]) * p, zero - n[1] };
+    const vr h = r_sqrt(r_max(one - u, zero));
+    vr tangent[3], bitangent[3];
+    R(tangents_of)(n, tangent, bitangent);
     for (int k = 0; k < 3; k++)
         r_store((real *)args->direction[k] + at, (x * tangent[k] + y * bitangent[k]) + h * n[k]);
 }

@@ -13,7 +13,7 @@
         .soft_light = GLINT_WITH_AREA && GLINT_WITH_SHADOW ? GLINT_ENTRY(soft_light_##real) : NULL, \
         .raster = GLINT_WITH_RASTER ? GLINT_ENTRY(raster_##real) : NULL, \
         .bounce = GLINT_WITH_BOUNCE ? GLINT_ENTRY(bounce_##real) : NULL, .vertex = GLINT_WITH_VERTEX ? GLINT_ENTRY(vertex_##real) : NULL, \
-        .scatter = GLINT_WITH_INDIRECT ? GLINT_ENTRY(scatter_##real) : NULL, \
+        .scatter = GLINT_WITH_INDIRECT ? GLINT_ENTRY(scatter_##real) : NULL, .spread = GLINT_WITH_INDIRECT ? GLINT_ENTRY(spread_##real) : NULL, \
     }
 
 const glint_stages GLINT_ENTRY_OF(stages, GLINT_ISA) = {
