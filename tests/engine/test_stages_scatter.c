@@ -56,10 +56,10 @@ static void spread_case(int precision, bool odd)
 {
     const uint32_t groups = 1 + below(6), n = groups * GLINT_GROUP;
     const array_kind kind = real_kind(precision);
-    const void *normal[3], *eye[3], *disk[2];
+    const void *normal[3], *ray[3], *disk[2];
     const void *alpha = input(kind, n);
     input3(normal, kind, n);
-    input3(eye, kind, n);
+    input3(ray, kind, n);
     for (int k = 0; k < 2; k++)
         disk[k] = input(kind, n);
     for (uint32_t i = 0; i < n; i++) {
@@ -68,20 +68,20 @@ static void spread_case(int precision, bool odd)
         random_unit(up);
         random_unit(v);
         for (int k = 0; k < 3 && one_in(5); k++)
-            v[k] = up[k];
+            v[k] = -up[k];
         for (int k = 0; k < 3; k++) {
             up[k] = maybe_odd(odd, up[k]);
             v[k] = maybe_odd(odd, v[k]);
         }
         put3(normal, precision, i, up);
-        put3(eye, precision, i, v);
+        put3(ray, precision, i, v);
         put(alpha, precision, i, one_in(4) ? 1e-18 : power_of_ten(-8, 0));
         put(disk[0], precision, i, radius * cos(angle));
         put(disk[1], precision, i, radius * sin(angle));
     }
     glint_spread_args args = { .group_count = groups, .wanted = masks(groups), .alpha = alpha, .disk = { disk[0], disk[1] } };
     memcpy(args.normal, normal, sizeof normal);
-    memcpy(args.eye, eye, sizeof eye);
+    memcpy(args.ray, ray, sizeof ray);
     FOR_EACH_TESTED
     {
         void *out[5];

@@ -29,6 +29,7 @@
 typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTED, EVENT_STRAIGHT, EVENT_COUNT } event;
 
 #define CHOICES (EVENT_COUNT - EVENT_SCATTERED)
+#define LEAST_SHARE 0.05 ///< assumed of a surface that reflects less head-on, because it reflects more at grazing angles
 
 struct glint_indirect *glint_indirect_create(const glint_plan *plan)
 {
@@ -89,7 +90,8 @@ static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i
 {
     const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
     const uint32_t ray = batch->ray_of[i];
-    return ((m->mirrors || m->transmits) && batch->rays->depth[ray] < plan->desc.max_depth) ||
+    const bool plain = glint_is_plain(plan, batch->tile.surface.material[i]);
+    return ((m->mirrors || m->transmits) && !plain && batch->rays->depth[ray] < plan->desc.max_depth) ||
            (m->clears && batch->rays->passes[ray] < GLINT_PASSES_MAX);
 }
 
@@ -143,11 +145,18 @@ static bool spreads_at(const glint_batch *batch, const glint_plan *plan, uint32_
     return (what == EVENT_MIRRORED || what == EVENT_REFRACTED) && is_rough(batch, plan, i);
 }
 
-/// Replaces the shares of the mirrored and of the refracted ray of a rough surface.
+/// Fills the shares of the mirrored and of the refracted ray of a rough surface.
 static void spread_shares(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i, double share[2])
 {
     const double weight[3] = { batch->rays->weight[0][batch->ray_of[i]], batch->rays->weight[1][batch->ray_of[i]],
                                batch->rays->weight[2][batch->ray_of[i]] };
+    glint_bounce_material buffer;
+    if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
+        const glint_bounce_material *m = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer);
+        for (int c = 0; c < 3 && m->mirrors; c++)
+            share[0] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? fmax(m->f0[c], LEAST_SHARE) : 1));
+        return;
+    }
     glint_rough_shares(batch, &batch->tile, frame, i, share);
     share[0] *= mean(weight);
     share[1] *= mean(weight);
@@ -172,7 +181,10 @@ static event choose(struct glint_indirect *indirect, const glint_tile_frame *fra
         share[1] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_MIRRORED].weight);
         share[2] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_REFRACTED].weight);
         share[3] = frame->plan->clears ? 3 * mean(split[GLINT_BRANCH_STRAIGHT].weight) : 0;
-        if (is_rough(batch, frame->plan, i) && !ends)
+    }
+    if (is_rough(batch, frame->plan, i)) {
+        share[1] = share[2] = 0;
+        if (rays->depth[ray] < frame->plan->desc.max_depth)
             spread_shares(batch, frame, i, share + 1);
     }
     const double all = ((share[0] + share[1]) + share[2]) + share[3];
@@ -193,6 +205,40 @@ static event choose(struct glint_indirect *indirect, const glint_tile_frame *fra
         least = glint_larger(least, spreads ? all / 3 : next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
     return least <= rays->least[ray] ? EVENT_NONE : what;
+}
+
+/// Starts the reflected rays of the paths at plain rough surfaces, the lanes in `plain`.
+static void spread_plain(struct glint_indirect *indirect, const glint_tile_frame *frame, const uint16_t *plain,
+                         glint_rays *next)
+{
+    const glint_tile *tile = &indirect->batch.tile;
+    const glint_precision precision = frame->plan->desc.precision;
+    glint_spread_args args = { .group_count = tile->group_count, .wanted = plain, .alpha = indirect->alpha,
+                               .cosine = indirect->cosine, .weight = indirect->unmasked,
+                               .disk = { indirect->direction[0], indirect->direction[1] } };
+    glint_bounce_material buffer;
+    for (int c = 0; c < 3; c++) {
+        args.normal[c] = tile->surface.normal[c];
+        args.ray[c] = tile->rays.direction[c];
+        args.direction[c] = indirect->direction[c];
+    }
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        if (glint_has_lane(plain, i))
+            glint_real_put(indirect->alpha, precision, i, glint_tile_bouncing(tile, frame->plan, i, &buffer)->alpha);
+    frame->stages->geometry[precision].spread(&args);
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        if (!glint_has_lane(plain, i))
+            continue;
+        const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
+        const double cosine = glint_real_at(indirect->cosine, precision, i), part = glint_real_at(indirect->unmasked, precision, i);
+        next->depth[i]++;
+        next->blind[i / GLINT_GROUP] |= (uint16_t)((unsigned)m->facets << i % GLINT_GROUP);
+        for (int c = 0; c < 3; c++) {
+            const double share = m->mirror[c] * m->specular[c] * glint_rough_reflectance(m, c, cosine, 1);
+            glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
+            next->weight[c][i] = glint_weight(next->weight[c][i] * (share * part));
+        }
+    }
 }
 
 /// Starts the scattered ray of the path of sample i.
@@ -244,11 +290,16 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
     const void *const up[] = { indirect->up[0], indirect->up[1], indirect->up[2] };
     glint_indirect_scatter(frame, batch->tile.group_count, up, indirect->spread, &indirect->next_draws, 0,
                            indirect->direction);
+    uint16_t plain[GLINT_TILE_GROUPS] = { 0 };
     for (uint32_t g = 0; g < batch->tile.group_count; g++)
         for (unsigned bits = indirect->spread[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double disk[2];
             glint_ray ray;
+            if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
+                plain[g] |= (uint16_t)(bits & -bits);
+                continue;
+            }
             glint_batch_start_ray(batch, &batch->tile, frame, i, &ray);
             for (int c = 0; c < 3; c++)
                 ray.weight[c] = next->weight[c][i];
@@ -257,6 +308,7 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
             glint_rough_leave(batch, &batch->tile, frame, i, disk, (glint_branch)indirect->branch[i], &ray);
             glint_rays_put(next, frame->plan, i, &ray);
         }
+    spread_plain(indirect, frame, plain, next);
 }
 
 /// Continues every path that has hit a surface. Returns whether there is any.
@@ -344,9 +396,9 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
     for (int c = 0; c < 3; c++) {
         args.weight[c] = rays->weight[c];
         args.background[c] = background[c];
-        args.sum[c] = to->film.sum[GLINT_TERM_INDIRECT][c];
+        args.sum[c] = to->film.sum[indirect->term < GLINT_TERM_COUNT ? indirect->term : GLINT_TERM_INDIRECT][c];
     }
-    if (rays == &indirect->first && !indirect->batch.ordered && !indirect->salt) { // each ray has its own pixel
+    if (rays == &indirect->first && !indirect->batch.ordered && indirect->term < GLINT_TERM_COUNT) { // each ray has its own pixel
         frame->stages->sky(&args);
         return;
     }
@@ -390,13 +442,15 @@ static void collect(const struct glint_indirect *indirect, const glint_tile_fram
 static void count_rays(const struct glint_indirect *indirect, glint_tile *to)
 {
     const glint_rays *rays = indirect->batch.rays;
-    for (uint32_t g = 0; g < rays->group_count; g++)
-        for (unsigned bits = rays->active[g]; bits; bits &= bits - 1) {
-            const uint16_t term = rays->term[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)];
-            to->counts.mirror += indirect->salt && term == GLINT_TERM_MIRROR;
-            to->counts.refraction += indirect->salt && term == GLINT_TERM_TRANSMISSION;
-            to->counts.indirect += !indirect->salt || term == GLINT_TERM_INDIRECT;
+    uint64_t *count = !indirect->salt ? &to->counts.indirect : &to->counts.mirror;
+    for (uint32_t g = 0; g < rays->group_count; g++) {
+        *count += (unsigned)__builtin_popcount(rays->active[g]);
+        for (unsigned bits = indirect->term < GLINT_TERM_COUNT ? 0 : rays->active[g]; bits; bits &= bits - 1) {
+            const bool refracted = rays->term[g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)] == GLINT_TERM_TRANSMISSION;
+            to->counts.refraction += refracted;
+            *count -= refracted;
         }
+    }
 }
 
 /// Lights the hits. The light of faces and vertices is cached for all readers, so it uses every sample of the lights.
@@ -440,6 +494,7 @@ void glint_indirect_begin(struct glint_indirect *indirect, const glint_tile_fram
     indirect->plan.light_count = frame->plan->indirect.light_count;
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;
+    indirect->term = GLINT_TERM_INDIRECT;
     for (uint32_t i = 0; frame->plan->rough_samples && i < GLINT_TILE_SAMPLES; i++)
         for (int c = 0; c < 3; c++)
             glint_real_put(indirect->up[c], frame->plan->desc.precision, i, c == 2);

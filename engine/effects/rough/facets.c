@@ -122,8 +122,7 @@ static double dielectric(double c, double s, double ratio)
     return ratio == 1 ? 0 : s < 0 ? 1 : 0.5 * (p * p + q * q);
 }
 
-/// Returns the reflected share in channel c, without the material's factors.
-static double reflectance(const glint_bounce_material *m, int c, double cosine, double ratio)
+double glint_rough_reflectance(const glint_bounce_material *m, int c, double cosine, double ratio)
 {
     if (m->fresnel)
         return dielectric(cosine, refracted_cosine(cosine, ratio), ratio);
@@ -142,7 +141,7 @@ void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const 
     const double ratio = glint_batch_ratio(batch, tile, frame, i);
     share[0] = share[1] = 0;
     for (int c = 0; c < 3; c++) {
-        const double r = fmax(reflectance(m, c, v.to_eye[2], ratio), LEAST_CHANCE);
+        const double r = fmax(glint_rough_reflectance(m, c, v.to_eye[2], ratio), LEAST_CHANCE);
         share[GLINT_BRANCH_MIRRORED] += m->mirrors ? m->mirror[c] * m->specular[c] * r : 0;
         if (m->transmits)
             share[GLINT_BRANCH_REFRACTED] += fmax(m->transmission[c], LEAST_CHANCE) * (m->fresnel ? fmax(1 - r, LEAST_CHANCE) : 1);
@@ -155,7 +154,7 @@ static void weigh(const glint_bounce_material *m, glint_branch branch, double co
 {
     const bool total = refracted_cosine(cosine, ratio) < 0;
     for (int c = 0; c < 3; c++) {
-        const double r = reflectance(m, c, cosine, ratio), mirror = m->mirror[c] * m->specular[c];
+        const double r = glint_rough_reflectance(m, c, cosine, ratio), mirror = m->mirror[c] * m->specular[c];
         const double beyond = (total ? fmax(1 - m->clear - mirror, 0) : m->transmission[c]) * (m->fresnel ? 1 - r : 1);
         weight[c] = glint_weight(weight[c] * ((branch == GLINT_BRANCH_MIRRORED ? mirror * r : beyond) * factor));
     }

@@ -18,9 +18,9 @@ struct glint_rough {
     double share[GLINT_TILE_SAMPLES]; ///< share of the paths of each point that are reflected
     // points that only reflect, from GGX's facets: the stage spread draws for all of them at once
     uint16_t plain[GLINT_TILE_GROUPS];
-    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES], eye[3][GLINT_TILE_SAMPLES], alpha[GLINT_TILE_SAMPLES]; ///< real
-    _Alignas(64) double cosine[GLINT_TILE_SAMPLES], unmasked[GLINT_TILE_SAMPLES]; ///< real: results of spread
-    double weight[3][GLINT_TILE_SAMPLES], f0[3][GLINT_TILE_SAMPLES]; ///< of a ray at full reflectance; Schlick's f0
+    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES], ray[3][GLINT_TILE_SAMPLES], alpha[GLINT_TILE_SAMPLES]; ///< real
+    double weight[3][GLINT_TILE_SAMPLES], grazing[3][GLINT_TILE_SAMPLES]; ///< of a ray reflected straight back, and what
+        ///< Schlick's reflectance adds at grazing angles
     glint_plan plan; ///< the frame's plan, with the numbers of samples and bounces of these paths
     glint_tile_frame frame;
 };
@@ -51,16 +51,8 @@ static bool spreads(const glint_tile *seen, const glint_plan *plan, const glint_
     return glint_is_spreading(&plan->bouncing[seen->surface.material[i]]) && (!from || from->rays->depth[from->ray_of[i]] < plan->desc.max_depth);
 }
 
-/// Returns whether the stage spread serves the surface of sample i.
-static bool is_plain(const glint_tile *seen, const glint_plan *plan, uint32_t i)
-{
-    const uint32_t material = seen->surface.material[i];
-    const glint_bounce_material *m = &plan->bouncing[material];
-    return !m->transmits && !m->beckmann && !m->fresnel && !(glint_plan_bumps(plan) && plan->patterns->of[material].slope);
-}
-
 /// Fills the arguments of spread for point i, and the parts of its rays that are equal for all paths.
-static void note_plain(struct glint_rough *rough, const glint_tile *seen, uint32_t i, glint_ray *ray)
+static void note_plain(struct glint_rough *rough, const glint_tile *seen, uint32_t i, uint32_t paths, glint_ray *ray)
 {
     const glint_plan *plan = &rough->plan;
     glint_bounce_material buffer;
@@ -69,9 +61,10 @@ static void note_plain(struct glint_rough *rough, const glint_tile *seen, uint32
     glint_rough_view(seen, plan, i, normal, eye);
     for (int c = 0; c < 3; c++) {
         glint_real_put(rough->normal[c], plan->desc.precision, i, normal[c]);
-        glint_real_put(rough->eye[c], plan->desc.precision, i, eye[c]);
-        rough->weight[c][i] = m->mirror[c] * m->specular[c];
-        rough->f0[c][i] = m->schlick ? m->f0[c] : 1;
+        glint_real_put(rough->ray[c], plan->desc.precision, i, -eye[c]);
+        const double most = ray->weight[c] / paths * (m->mirror[c] * m->specular[c]), f0 = m->schlick ? m->f0[c] : 1;
+        rough->weight[c][i] = most * f0;
+        rough->grazing[c][i] = most * (1 - f0);
     }
     glint_real_put(rough->alpha, plan->desc.precision, i, m->alpha);
     rough->plain[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
@@ -101,8 +94,8 @@ static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, con
     glint_batch_start_ray(from ? from : &rough->paths->batch, seen, &rough->frame, i, &ray);
     if (!from)
         ray.term = GLINT_TERM_MIRROR;
-    if (is_plain(seen, plan, i))
-        note_plain(rough, seen, i, &ray);
+    if (glint_is_plain(plan, seen->surface.material[i]))
+        note_plain(rough, seen, i, paths, &ray);
     glint_indirect_begin_point(rough->paths, to, plan, i, paths, whole, &ray, block);
     return paths;
 }
@@ -161,31 +154,34 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
 /// Computes the weights of a group's rays by Schlick's reflectance.
 static void weigh(struct glint_rough *rough, uint32_t g)
 {
+    struct glint_indirect *paths = rough->paths;
     const glint_precision precision = rough->plan.desc.precision;
-    double factor[GLINT_GROUP], schlick[GLINT_GROUP];
+    const size_t at = (size_t)g * GLINT_GROUP;
+    double factor[GLINT_GROUP], grazing[GLINT_GROUP];
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        const double r = 1 - glint_real_at(rough->cosine, precision, g * GLINT_GROUP + i);
-        schlick[i] = (r * r) * (r * r) * r;
-        factor[i] = glint_real_at(rough->unmasked, precision, g * GLINT_GROUP + i);
+        factor[i] = precision == GLINT_FLOAT ? (double)((const float *)paths->unmasked)[at + i] : paths->unmasked[at + i];
+        grazing[i] = precision == GLINT_FLOAT ? (double)((const float *)paths->cosine)[at + i] : paths->cosine[at + i];
     }
-    for (int c = 0; c < 3; c++) {
-        const double *weight = rough->weight[c] + g * GLINT_GROUP, *f0 = rough->f0[c] + g * GLINT_GROUP;
-        const double *start = rough->paths->weight[c] + g * GLINT_GROUP;
-        double *to = rough->paths->first.weight[c] + g * GLINT_GROUP;
-        for (uint32_t i = 0; i < GLINT_GROUP; i++)
-            to[i] = glint_weight(start[i] * ((weight[i] * (f0[i] + (1 - f0[i]) * schlick[i])) * factor[i]));
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        const double r = 1 - grazing[i];
+        grazing[i] = ((r * r) * (r * r) * r) * factor[i];
     }
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            const double weight = rough->weight[c][at + i] * factor[i] + rough->grazing[c][at + i] * grazing[i];
+            paths->first.weight[c][at + i] = weight < GLINT_WEIGHT_MAX ? weight : GLINT_WEIGHT_MAX;
+        }
 }
 
 /// Makes the first rays of the points in `wanted` that the stage spread serves.
 static void begin_plain(struct glint_rough *rough, uint32_t group_count, const uint16_t *wanted)
 {
     glint_spread_args args = { .group_count = group_count, .wanted = wanted, .alpha = rough->alpha,
-                               .cosine = rough->cosine, .weight = rough->unmasked,
+                               .cosine = rough->paths->cosine, .weight = rough->paths->unmasked,
                                .disk = { rough->paths->direction[0], rough->paths->direction[1] } };
     for (int c = 0; c < 3; c++) {
         args.normal[c] = rough->normal[c];
-        args.eye[c] = rough->eye[c];
+        args.ray[c] = rough->ray[c];
         args.direction[c] = rough->paths->first.direction[c];
     }
     rough->frame.stages->geometry[rough->plan.desc.precision].spread(&args);
@@ -241,6 +237,10 @@ static void gather(glint_tile *tile, const glint_tile_frame *frame, const glint_
     const uint32_t count = find_points(rough, tile, seen, from);
     if (count == 0)
         return;
+    paths->term = GLINT_TERM_MIRROR;
+    for (uint32_t g = 0; g < seen->group_count; g++)
+        if (from || paths->matt[g] & ~rough->plain[g])
+            paths->term = GLINT_TERM_COUNT;
     glint_batch_begin(&paths->batch, tile, &rough->frame, GLINT_WALK_ROUGH);
     paths->batch.ordered = from != NULL; // rays may share pixels
     for (uint32_t path = 0; path < count && !glint_tile_cancelled(frame); path++) {

@@ -9,6 +9,18 @@
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                         double share[2]);
 
+/// Returns whether a surface only reflects, from GGX's facets, so that the stage spread serves it.
+static inline bool glint_is_plain(const glint_plan *plan, uint32_t material)
+{
+    const glint_bounce_material *m = &plan->bouncing[material];
+    return m->rough && !m->transmits && !m->beckmann && !m->fresnel &&
+           !(glint_plan_bumps(plan) && plan->patterns->of[material].slope);
+}
+
+/// Returns the reflected share in channel c at a facet, without the material's factors. cosine: of the arriving ray
+/// and the facet. ratio: see glint_batch_ratio; only read with `fresnel`.
+double glint_rough_reflectance(const glint_bounce_material *m, int c, double cosine, double ratio);
+
 /// Finds the normal of sample i on the ray's side, with its bump, and the unit vector against the ray.
 void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3]);
 

@@ -64,10 +64,10 @@ typedef struct glint_scatter_args {
 typedef struct glint_spread_args {
     uint32_t group_count;
     const uint16_t *wanted; ///< one bit per lane
-    const void *normal[3], *eye[3]; ///< real, unit; eye: against the arriving ray
+    const void *normal[3], *ray[3]; ///< real, unit; ray: the direction of the arriving ray
     const void *alpha; ///< real, above 0: width of the distribution
     const void *disk[2]; ///< real: a point of the unit disk
-    void *direction[3]; ///< out, real, of length 1 up to rounding
+    void *direction[3]; ///< out, real, of length 1 up to rounding; may be the arrays of `disk`
     void *cosine; ///< out, real: of the angle between ray and facet
     void *weight; ///< out, real: G2 / G1, the probability that no other facet is in the way; 0 below the surface
 } glint_spread_args;

@@ -24,9 +24,9 @@ static inline void R(spread_lanes)(const glint_spread_args *args, size_t at)
     const vr zero = r_set(0), one = r_set(1), alpha = r_load((const real *)args->alpha + at), aa = alpha * alpha;
     vr n[3], v[3], tangent[3], bitangent[3], facet[3];
     R(load3)(args->normal, at, n);
-    R(load3)(args->eye, at, v);
+    R(load3)(args->ray, at, v);
     R(tangents_of)(n, tangent, bitangent);
-    const vr e[3] = { DOT(tangent, v), DOT(bitangent, v), r_min(r_max(DOT(n, v), zero), one) };
+    const vr e[3] = { zero - DOT(tangent, v), zero - DOT(bitangent, v), r_min(r_max(zero - DOT(n, v), zero), one) };
     R(facet_of)(e, alpha, r_load((const real *)args->disk[0] + at), r_load((const real *)args->disk[1] + at), facet);
     const vr cosine = r_min(DOT(e, facet), one), twice = r_set(2) * cosine;
     const vr x = twice * facet[0] - e[0], y = twice * facet[1] - e[1], z = twice * facet[2] - e[2];
