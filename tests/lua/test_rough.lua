@@ -90,6 +90,35 @@ function tests.step_sky()
   end
 end
 
+-- A sun in a dim sky: its light by the sum over its disc, with little noise at 64 rays.
+function tests.sun()
+  local COSINE <const>, L <const> = 0.9995, 1e4
+  local sun = glint.unit { 0.5, 0.6, 0.62 }
+  local sky = glint.pattern(function(d) return glint.select(glint.less(COSINE, d:dot(sun)), L, 0.2) end)
+  local across = glint.unit(sun:cross { 0, 0, 1 })
+  local up = across:cross(sun)
+  for _, distribution in ipairs(DISTRIBUTIONS) do
+    local material = glint.material { model = "cook_torrance", f0 = 0.8, diffuse = 0, roughness = 0.5, distribution = distribution }
+    local at = ball(material, { background = sky, reflection_samples = 64 }, { samples = 1 })
+    for _, x in ipairs { 31, 36, 41, 46 } do
+      local got, cosine = at(x, "mirror")
+      local normal, sum, count = { (x - SIDE // 2) * 2.2 / SIDE, 0, cosine }, 0, 0
+      for i = 0, 19 do
+        local c = 1 - (1 - COSINE) * (i + 0.5) / 20
+        local s = math.sqrt(1 - c * c)
+        for k = 0, 19 do
+          local angle = 2 * math.pi * (k + 0.5) / 20
+          local light = sun * c + (across * math.cos(angle) + up * math.sin(angle)) * s
+          sum = sum + material:evaluate({ normal = normal, to_light = light, to_eye = { 0, 0, 1 } }).specular.x
+          count = count + 1
+        end
+      end
+      local want = L * 2 * (1 - COSINE) * sum / count
+      check(math.abs(got - want) < 0.12 * want + 0.2, "%s: a sun of %g, column %d: %g expected, got %g", distribution, L, x, want, got)
+    end
+  end
+end
+
 -- Roughness 0 is the mirror, bit for bit, and small roughness approaches it.
 function tests.smooth_limit()
   local sky = glint.pattern(function(d) return d * 0.5 + 0.5 end)

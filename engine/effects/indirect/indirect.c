@@ -294,7 +294,7 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
     for (uint32_t g = 0; g < batch->tile.group_count; g++)
         for (unsigned bits = indirect->spread[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            double disk[2];
+            double disk[2], square[2];
             glint_ray ray;
             if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
                 plain[g] |= (uint16_t)(bits & -bits);
@@ -305,7 +305,8 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
                 ray.weight[c] = next->weight[c][i];
             for (int c = 0; c < 2; c++)
                 disk[c] = glint_real_at(indirect->direction[c], frame->plan->desc.precision, i);
-            glint_rough_leave(batch, &batch->tile, frame, i, disk, (glint_branch)indirect->branch[i], &ray);
+            glint_indirect_square(&indirect->next_draws, i, 0, square);
+            glint_rough_leave(batch, &batch->tile, frame, i, disk, square, (glint_branch)indirect->branch[i], &ray);
             glint_rays_put(next, frame->plan, i, &ray);
         }
     spread_plain(indirect, frame, plain, next);

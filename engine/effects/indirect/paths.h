@@ -85,6 +85,13 @@ static inline void glint_indirect_note(draws *to, uint32_t at, uint64_t k, const
     to->digits[1][at] = seed->digits[1];
 }
 
+/// Returns the point of the unit square for ray i.
+static inline void glint_indirect_square(const draws *from, uint32_t i, uint32_t further, double square[2])
+{
+    const glint_sequence_seed seed = { from->order[i], { from->digits[0][i], from->digits[1][i] } };
+    glint_sequence_flipped(from->number[i] + further, &seed, square);
+}
+
 /// Returns whether the scattered direction at i leaves the sample's surface.
 static inline bool glint_indirect_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i,
                                          const double (*direction)[GLINT_TILE_SAMPLES])

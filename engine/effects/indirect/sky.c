@@ -43,9 +43,8 @@ void glint_indirect_draw_sky(const glint_tile *tile, const glint_plan *plan, con
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned bits = wanted[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            const glint_sequence_seed seed = { drawn->order[i], { drawn->digits[0][i], drawn->digits[1][i] } };
             double square[2], n[3], d[3];
-            glint_sequence_flipped(drawn->number[i] + further, &seed, square);
+            glint_indirect_square(drawn, i, further, square);
             for (int c = 0; c < 3; c++)
                 n[c] = glint_real_at(tile->surface.normal[c], precision, i);
             share[i] = draw(plan->sky, n, square, d);

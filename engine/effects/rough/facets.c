@@ -6,13 +6,19 @@
 /// is in its way: G2 / G1 with Smith's height-correlated G2 for reflection, and G1 of the new direction for
 /// refraction (B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 ///
+/// Under a sky with bright parts, some reflected rays are drawn by the sky's table (effects/environment/sky.h) instead,
+/// more of them from rougher surfaces. The weight of every ray is then divided by the mean of both densities, relative
+/// to that of the facets (the balance heuristic, as in effects/indirect/sky.c).
+///
 /// Facets of Beckmann's distribution are drawn from GGX too, and weighted by the quotient of the two distributions,
 /// exp(-x) (1 + x)^2 with x = tan^2 / alpha^2, which is at most 4/e.
 #include "engine/base/math.h"
 #include "engine/base/vec.h"
+#include "engine/effects/environment/sky.h"
 #include "engine/effects/pattern/pattern.h"
 #include "engine/effects/rough/rough.h"
 
+#define PI 0x1.921fb54442d18p+1
 #define BECKMANN_FAR 700 ///< x above which Beckmann's distribution has no facets in double
 #define LEAST_CHANCE 0.1 ///< of reflection and of refraction, because facets are steeper than the surface
 
@@ -130,6 +136,51 @@ double glint_rough_reflectance(const glint_bounce_material *m, int c, double cos
     return m->schlick ? m->f0[c] + (1 - m->f0[c]) * ((r * r) * (r * r) * r) : 1;
 }
 
+// ---- Under a bright sky ----
+
+/// Returns the share of a surface's reflected rays that are drawn by the sky.
+static double sky_share(double alpha) { return 0.5 * fmin(4 * alpha, 1); }
+
+/// Draws a direction by the sky, and finds the facet that reflects the ray there. Returns whether there is one.
+static bool draw_by_sky(const view *v, const glint_sky *sky, const double square[2], double facet[3])
+{
+    double direction[3], out[3];
+    glint_sky_draw(sky, square, direction);
+    for (int k = 0; k < 3; k++) {
+        out[k] = vec_dot(v->axis[k], direction);
+        facet[k] = v->to_eye[k] + out[k];
+    }
+    if (!(out[2] > 0) || !(facet[2] > 0))
+        return false;
+    vec_normalize(facet, facet);
+    return true;
+}
+
+/// Draws a facet by the sky or by the ray. Returns its tan^2 / alpha^2; a negative number: none reflects the ray.
+static double draw_either(const view *v, const glint_sky *sky, const double square[2], double facet[3])
+{
+    const double share = sky_share(v->alpha), u = square[0];
+    if (u < share) {
+        const double stretched[2] = { u / share, square[1] };
+        if (!draw_by_sky(v, sky, stretched, facet))
+            return -1;
+        const double slope = sqrt(facet[0] * facet[0] + facet[1] * facet[1]) / (v->alpha * facet[2]);
+        return slope * slope;
+    }
+    const double r = sqrt((u - share) / (1 - share)), turn = 2 * PI * square[1];
+    const double disk[2] = { r * glint_cos(turn), r * glint_sin(turn) };
+    return draw_facet(v, disk, facet);
+}
+
+/// Returns the density of the facets in a direction that they reflect, relative to that of all its rays.
+static double balance(const view *v, const glint_sky *sky, double x, const double facet[3], const double direction[3])
+{
+    const double share = sky_share(v->alpha), c = facet[2] * facet[2];
+    const double d = 1 / (PI * (v->alpha * v->alpha) * (c * c) * ((1 + x) * (1 + x)));
+    const double density = d / (2 * (v->to_eye[2] + stretched(v->alpha, v->to_eye[2])));
+    return density < HUGE_VAL ? density / (share * glint_sky_density(sky, direction) + (1 - share) * density) : 1 / (1 - share);
+}
+
 // ---- Rays ----
 
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
@@ -161,14 +212,16 @@ static void weigh(const glint_bounce_material *m, glint_branch branch, double co
 }
 
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], glint_branch branch, glint_ray *ray)
+                       const double disk[2], const double *square, glint_branch branch, glint_ray *ray)
 {
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const view v = look(tile, frame->plan, i, m);
     const double ratio = glint_batch_ratio(batch, tile, frame, i);
     double facet[3], out[3];
-    const double x = draw_facet(&v, disk, facet), cosine = fmin(vec_dot(v.to_eye, facet), 1);
+    const glint_sky *sky = branch == GLINT_BRANCH_MIRRORED ? frame->plan->sky : NULL;
+    const double x = sky ? draw_either(&v, sky, square, facet) : draw_facet(&v, disk, facet);
+    const double cosine = fmin(vec_dot(v.to_eye, facet), 1);
     const double s = branch == GLINT_BRANCH_REFRACTED ? refracted_cosine(cosine, ratio) : -1;
     const bool through = s >= 0;
     for (int k = 0; k < 3; k++)
@@ -179,7 +232,8 @@ void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const g
     const double along = through ? -out[2] : out[2];
     vec_scale(out, ray->direction, through ? -1 : 1);
     const bool leaves = along > 0 && glint_tile_leaves(tile, frame->plan, i, out);
-    weigh(m, branch, cosine, ratio, leaves ? unmasked(&v, x, along, through) : 0, ray->weight);
+    const double factor = leaves && x >= 0 ? unmasked(&v, x, along, through) : 0;
+    weigh(m, branch, cosine, ratio, sky && factor > 0 ? factor * balance(&v, sky, x, facet, ray->direction) : factor, ray->weight);
     ray->depth++;
     ray->inward = glint_has_lane(tile->hit.back, i) != through;
     ray->sight = false;

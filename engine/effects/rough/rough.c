@@ -133,11 +133,12 @@ static glint_branch draw_branch(const struct glint_rough *rough, uint32_t i, uin
 
 /// Makes the first ray of path `number` of point i. disk: a point of the unit disk.
 static void begin_path(struct glint_rough *rough, const glint_tile *seen, const glint_batch *from, uint32_t i,
-                       uint64_t number, const double disk[2])
+                       uint64_t number, const double disk[2], uint32_t path)
 {
     struct glint_indirect *paths = rough->paths;
     const glint_batch *batch = from ? from : &paths->batch;
     const glint_branch branch = draw_branch(rough, i, number);
+    double square[2];
     glint_ray ray;
     glint_batch_start_ray(batch, seen, &rough->frame, i, &ray);
     if (!from)
@@ -147,7 +148,8 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     const double chance = branch == GLINT_BRANCH_MIRRORED ? rough->share[i] : 1 - rough->share[i];
     for (int c = 0; c < 3; c++)
         ray.weight[c] = glint_weight(paths->weight[c][i] / chance);
-    glint_rough_leave(batch, seen, &rough->frame, i, disk, branch, &ray);
+    glint_indirect_square(&paths->first_draws, i, path, square);
+    glint_rough_leave(batch, seen, &rough->frame, i, disk, square, branch, &ray);
     glint_rays_put(&paths->first, &rough->plan, i, &ray);
 }
 
@@ -208,7 +210,7 @@ static bool begin_paths(struct glint_rough *rough, const glint_tile *seen, const
             double disk[2];
             for (int c = 0; c < 2; c++)
                 disk[c] = glint_real_at(paths->direction[c], rough->plan.desc.precision, i);
-            begin_path(rough, seen, from, i, number, disk);
+            begin_path(rough, seen, from, i, number, disk, path);
         }
     return true;
 }
@@ -261,7 +263,8 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 static glint_status prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
     (void)from;
-    return plan->rough_samples ? glint_indirect_find_light_rows(plan, error) : GLINT_OK;
+    const glint_status status = plan->rough_samples ? glint_indirect_find_light_rows(plan, error) : GLINT_OK;
+    return plan->rough_samples && !status ? glint_sky_find(plan, error) : status;
 }
 
 static bool called(const glint_plan *plan)

@@ -13,7 +13,7 @@ void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const 
 static inline bool glint_is_plain(const glint_plan *plan, uint32_t material)
 {
     const glint_bounce_material *m = &plan->bouncing[material];
-    return m->rough && !m->transmits && !m->beckmann && !m->fresnel &&
+    return m->rough && !m->transmits && !m->beckmann && !m->fresnel && !plan->sky &&
            !(glint_plan_bumps(plan) && plan->patterns->of[material].slope);
 }
 
@@ -26,9 +26,9 @@ void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i
 
 /// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
 /// direction, side, depth, media; multiplies the weight. disk: a point of the unit disk, where equal areas are equally
-/// likely. The weight is 0 where the facet that was drawn sends the ray through the surface, or where another facet
+/// likely. square: the point of the unit square that it belongs to; only read under a sky with bright parts. The weight is 0 where the facet that was drawn sends the ray through the surface, or where another facet
 /// is in its way.
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], glint_branch branch, glint_ray *ray);
+                       const double disk[2], const double *square, glint_branch branch, glint_ray *ray);
 
 #endif
