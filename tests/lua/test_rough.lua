@@ -181,6 +181,48 @@ function tests.lamps()
   check(most > 0.1, "the lamp is seen: %g", most)
 end
 
+-- Within a ball of glowing rough mirror, each ray sees the same light: a geometric series.
+function tests.enclosure()
+  for _, roughness in ipairs { 1e-4, 1e-3 } do
+    for _, depth in ipairs { 1, 3, 6 } do
+      local wall = glint.material { diffuse = 0, ambient = 1, mirror = 0.5, roughness = roughness }
+      local scene = glint.scene { ambient = 0.25, camera = glint.camera { eye = { 0.3, 0.2, 0.1 }, direction = { 1, 0, 0 }, fov = 60 },
+        glint.sphere { center = { 0, 0, 0 }, radius = 2, material = wall } }
+      local image = scene:render { width = 9, height = 7, max_depth = depth }
+      for x = 0, 8, 4 do
+        near(image:pixel(x, x % 7), 0.5 * (1 - 0.5 ^ (depth + 1)), 1e-5, ("a rough ball from within, roughness %g, depth %d"):format(roughness, depth))
+      end
+    end
+  end
+end
+
+-- Grazing rays, narrow lobes and turned normals: no ray brings more than the white furnace has, or, for Beckmann's
+-- facets, more than 4/e times G2 / G1 of GGX, which is below 2.7.
+function tests.hard_cases()
+  local waves = glint.pattern(function(p) return 0.05 * glint.sin(20 * p.x) * glint.sin(20 * p.z) end)
+  for _, distribution in ipairs(DISTRIBUTIONS) do
+    for _, roughness in ipairs { 0, 1e-9, 1e-4, 0.1, 1 } do
+      for _, bump in ipairs { false, waves } do
+        for _, fields in ipairs { { model = "cook_torrance", f0 = 1 }, { mirror = 1 }, { fresnel = true, transmission = 1 } } do
+          local own = { diffuse = 0, roughness = roughness, distribution = distribution, bump = bump or nil }
+          for name, value in pairs(fields) do own[name] = value end
+          local scene = glint.scene { background = 1, reflection_samples = 4, camera = glint.camera { eye = { 0, 1e-3, 9 }, at = { 0, 0, 0 }, fov = 2 },
+            glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material(own) } }
+          local image = scene:render { width = 16, height = 12 }
+          local least, most = math.huge, -math.huge
+          for y = 0, 11 do
+            for x = 0, 15 do
+              local v = image:pixel(x, y)
+              least, most = math.min(least, v == v and v or -1), math.max(most, v)
+            end
+          end
+          check(least >= 0 and most <= (distribution == "ggx" and 1.05 or 2.7), "%s, roughness %g, %s: light of %g to %g", distribution, roughness, fields.model or "phong", least, most)
+        end
+      end
+    end
+  end
+end
+
 function tests.fields()
   local material = glint.material {}
   check(material.roughness == 0 and material.mirror.x == 0, "smooth by default")

@@ -157,7 +157,7 @@ static void spread_shares(const glint_batch *batch, const glint_tile_frame *fram
             share[0] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? fmax(m->f0[c], LEAST_SHARE) : 1));
         return;
     }
-    glint_rough_shares(batch, &batch->tile, frame, i, share);
+    glint_rough_shares(batch, &batch->tile, frame, i, NULL, share);
     share[0] *= mean(weight);
     share[1] *= mean(weight);
 }

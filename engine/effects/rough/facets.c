@@ -20,7 +20,7 @@
 
 #define PI 0x1.921fb54442d18p+1
 #define BECKMANN_FAR 700 ///< x above which Beckmann's distribution has no facets in double
-#define LEAST_CHANCE 0.1 ///< of reflection and of refraction, because facets are steeper than the surface
+#define LEAST_CHANCE 0.1 ///< of reflection and of refraction where the facet is not known, because it is steeper
 
 // ---- The surface ----
 
@@ -184,18 +184,21 @@ static double balance(const view *v, const glint_sky *sky, double x, const doubl
 // ---- Rays ----
 
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        double share[2])
+                        const double *disk, double share[2])
 {
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const view v = look(tile, frame->plan, i, m);
-    const double ratio = glint_batch_ratio(batch, tile, frame, i);
+    const double ratio = glint_batch_ratio(batch, tile, frame, i), least = disk ? LEAST_CHANCE / 10 : LEAST_CHANCE;
+    double facet[3] = { 0, 0, 1 };
+    if (disk)
+        draw_facet(&v, disk, facet);
     share[0] = share[1] = 0;
     for (int c = 0; c < 3; c++) {
-        const double r = fmax(glint_rough_reflectance(m, c, v.to_eye[2], ratio), LEAST_CHANCE);
+        const double r = fmax(glint_rough_reflectance(m, c, fmin(vec_dot(v.to_eye, facet), 1), ratio), least);
         share[GLINT_BRANCH_MIRRORED] += m->mirrors ? m->mirror[c] * m->specular[c] * r : 0;
         if (m->transmits)
-            share[GLINT_BRANCH_REFRACTED] += fmax(m->transmission[c], LEAST_CHANCE) * (m->fresnel ? fmax(1 - r, LEAST_CHANCE) : 1);
+            share[GLINT_BRANCH_REFRACTED] += fmax(m->transmission[c], least) * (m->fresnel ? fmax(1 - r, least) : 1);
     }
 }
 

@@ -15,7 +15,7 @@
 
 struct glint_rough {
     struct glint_indirect *paths;
-    double share[GLINT_TILE_SAMPLES]; ///< share of the paths of each point that are reflected
+    bool mirrors[GLINT_TILE_SAMPLES], transmits[GLINT_TILE_SAMPLES]; ///< whether paths of each point are reflected, refracted
     // points that only reflect, from GGX's facets: the stage spread draws for all of them at once
     uint16_t plain[GLINT_TILE_GROUPS];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES], ray[3][GLINT_TILE_SAMPLES], alpha[GLINT_TILE_SAMPLES]; ///< real
@@ -83,12 +83,12 @@ static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, con
     glint_bounce_material buffer;
     double share[2];
     glint_ray ray;
-    glint_rough_shares(from ? from : &rough->paths->batch, seen, &rough->frame, i, share);
-    const double all = share[0] + share[1];
-    if (!(all > 0))
+    glint_rough_shares(from ? from : &rough->paths->batch, seen, &rough->frame, i, NULL, share);
+    rough->mirrors[i] = share[GLINT_BRANCH_MIRRORED] > 0;
+    rough->transmits[i] = share[GLINT_BRANCH_REFRACTED] > 0;
+    if (!rough->mirrors[i] && !rough->transmits[i])
         return 0;
-    rough->share[i] = share[0] / all;
-    const bool both = share[0] > 0 && share[1] > 0;
+    const bool both = rough->mirrors[i] && rough->transmits[i];
     const bool sharp = glint_tile_bouncing(seen, plan, i, &buffer)->alpha < SHARP;
     const uint32_t paths = sharp && !both ? 1 : glint_indirect_paths_of(plan, from, i);
     glint_batch_start_ray(from ? from : &rough->paths->batch, seen, &rough->frame, i, &ray);
@@ -120,15 +120,19 @@ static uint32_t find_points(struct glint_rough *rough, const glint_tile *to, con
     return most;
 }
 
-/// Draws the branch of path `number` of point i.
-static glint_branch draw_branch(const struct glint_rough *rough, uint32_t i, uint64_t number)
+/// Draws the branch of path `number` of point i at the facet of a point of the disk. Returns its probability.
+static double draw_branch(const struct glint_rough *rough, const glint_batch *batch, const glint_tile *seen, uint32_t i,
+                          uint64_t number, const double disk[2], glint_branch *branch)
 {
-    double lot[2];
-    const double share = rough->share[i];
-    if (!(share > 0 && share < 1))
-        return share > 0 ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    double lot[2], share[2];
+    *branch = rough->mirrors[i] ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    if (!rough->mirrors[i] || !rough->transmits[i])
+        return 1;
+    glint_rough_shares(batch, seen, &rough->frame, i, disk, share);
     glint_indirect_draw(rough->paths, i, number, 1, lot);
-    return lot[0] < share ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    const double mirrored = share[GLINT_BRANCH_MIRRORED] / (share[0] + share[1]);
+    *branch = lot[0] < mirrored ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    return lot[0] < mirrored ? mirrored : 1 - mirrored;
 }
 
 /// Makes the first ray of path `number` of point i. disk: a point of the unit disk.
@@ -137,7 +141,8 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
 {
     struct glint_indirect *paths = rough->paths;
     const glint_batch *batch = from ? from : &paths->batch;
-    const glint_branch branch = draw_branch(rough, i, number);
+    glint_branch branch;
+    const double chance = draw_branch(rough, batch, seen, i, number, disk, &branch);
     double square[2];
     glint_ray ray;
     glint_batch_start_ray(batch, seen, &rough->frame, i, &ray);
@@ -145,7 +150,6 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
         ray.term = branch == GLINT_BRANCH_MIRRORED ? GLINT_TERM_MIRROR : GLINT_TERM_TRANSMISSION;
     ray.point = i;
     ray.least = paths->first.least[i];
-    const double chance = branch == GLINT_BRANCH_MIRRORED ? rough->share[i] : 1 - rough->share[i];
     for (int c = 0; c < 3; c++)
         ray.weight[c] = glint_weight(paths->weight[c][i] / chance);
     glint_indirect_square(&paths->first_draws, i, path, square);

@@ -5,9 +5,10 @@
 #include "engine/tile/batch.h"
 
 /// Estimates the shares of a ray's light that the rough surface of sample i reflects and refracts, to choose between
-/// them. Both are above 0 where light may go on. share: by GLINT_BRANCH_MIRRORED and GLINT_BRANCH_REFRACTED.
+/// them. Both are above 0 where light may go on. disk: see glint_rough_leave; NULL: the facet is not known yet. share: by
+/// GLINT_BRANCH_MIRRORED and GLINT_BRANCH_REFRACTED.
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        double share[2]);
+                        const double *disk, double share[2]);
 
 /// Returns whether a surface only reflects, from GGX's facets, so that the stage spread serves it.
 static inline bool glint_is_plain(const glint_plan *plan, uint32_t material)
