@@ -20,7 +20,7 @@
 #include "bindings/command/cli.h"
 #include "bindings/run/carried.h"
 
-#define COST_KNOBS_MAX 16
+#define COST_KNOBS_MAX 20
 #define COST_VALUES_MAX 12
 #define COST_RUNS_MAX 64
 #define COST_RUNS_LEAST 3 ///< quartiles of fewer runs mean nothing

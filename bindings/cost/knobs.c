@@ -335,6 +335,15 @@ static void list_occlusion_samples(const cost_subject *subject, cost_values *out
         cost_list_numbers(counts, COUNT(counts), subject->scene->desc.ambient_occlusion_samples, out);
 }
 
+// ---- reflection_samples: rays of rough surfaces ----
+
+static void list_reflection_samples(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 1, 4, 16, 64, 256 };
+    if (has_stage(subject->plan, "rough"))
+        cost_list_numbers(counts, COUNT(counts), subject->scene->desc.reflection_samples, out);
+}
+
 // ---- bits, encode: the file ----
 
 static void list_bits(const cost_subject *subject, cost_values *out)
@@ -410,6 +419,8 @@ const cost_knob cost_knobs[] = {
     { "indirect_bounces", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_bounces, IN_SCENE(indirect_bounces) },
     { "ambient_occlusion_samples", "ambient occlusion", COST_ERROR_FILM, true, false, list_occlusion_samples,
       IN_SCENE(ambient_occlusion_samples) },
+    { "reflection_samples", "a rough surface that reflects", COST_ERROR_FILM, true, false, list_reflection_samples,
+      IN_SCENE(reflection_samples) },
     { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, .apply = apply_bits },
     { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, .apply = apply_encode },
     { "reuse", "a second frame (in a loop of scene:render, choose a later frame than the first with --frame)",

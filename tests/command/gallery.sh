@@ -106,6 +106,7 @@ picture spotlights --size 320x180
 picture toon_teapot --frames 1
 picture trajectory --frames 9
 picture translucent --samples 4
+picture metals
 picture vectors
 picture wood_and_marble
 picture workshop --samples 9

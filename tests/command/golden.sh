@@ -51,6 +51,7 @@ picture lamps scripts/lamps.lua
 picture lampshade scripts/lampshade.lua
 picture lights scripts/lights.lua
 picture translucent scripts/translucent.lua
+picture metals scripts/metals.lua --set rays=2
 picture combined scripts/combined.lua
 picture rings_0009 scripts/rings.lua -f 9
 picture caps_0006 scripts/caps.lua -f 6

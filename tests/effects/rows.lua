@@ -17,7 +17,15 @@ return {
   { name = "glass", part = "BOUNCE", stage = "bounce", rays = "refraction", functions = { "bounce", "glint_batch" },
     call = function(_, parts) parts.ball.transmission = 0.5 end },
   { name = "microfacets", part = "FACET", stage = "facet", functions = { "facet", "^view_f" },
-    call = function(_, parts) parts.ball.model = "cook_torrance" end },
+    call = function(_, parts)
+      parts.ball.model = "cook_torrance"
+      parts.ball.mirror = 0 -- lamps alone
+    end },
+  { name = "rough", part = "INDIRECT", stage = "rough", rays = "mirror", functions = { "rough", "spread" },
+    call = function(_, parts)
+      parts.ball.mirror = 0.5
+      parts.ball.roughness = 0.3
+    end },
   { name = "blinn_phong", part = "BLINN", functions = {},
     call = function(_, parts) parts.ball.model = "blinn_phong" end },
   { name = "spot_light", part = "SPOT", functions = {},

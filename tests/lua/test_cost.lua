@@ -449,6 +449,12 @@ check(find(open, "ambient_occlusion_samples", 2).default, "its own among the val
 check(find(open, "ambient_occlusion_samples", 64).rmse < find(open, "ambient_occlusion_samples", 1).rmse,
   "error falls with the rays")
 
+local gold = study("gold", still("gold.lua", [[reflection_samples = 2, background = 0.5,
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } }, glint.sphere { center = { 0, 1, 0 }, radius = 1,
+  material = glint.material { model = "cook_torrance", f0 = 0.8, roughness = 0.6 } }]]) .. " --size 24x18 --knobs reflection_samples")
+check(find(gold, "reflection_samples", 2).default, "a rough surface has a knob")
+check(find(gold, "reflection_samples", 64).rmse < find(gold, "reflection_samples", 1).rmse, "error falls with its rays")
+
 -- ---- Output for people; the report ----
 
 check(run(film .. " --quick --knobs samples,encode --report " .. work .. "/a/b") == 0, "report: %s", read "err")

@@ -28,6 +28,7 @@
 
 typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTED, EVENT_STRAIGHT, EVENT_COUNT } event;
 
+#define PI 0x1.921fb54442d18p+1
 #define CHOICES (EVENT_COUNT - EVENT_SCATTERED)
 #define LEAST_SHARE 0.05 ///< assumed of a surface that reflects less head-on, because it reflects more at grazing angles
 
@@ -113,6 +114,12 @@ void glint_indirect_find_directions(struct glint_indirect *indirect, const glint
         glint_batch_find_directions(batch, &batch->tile, frame);
 }
 
+/// Returns which seed draws the direction of a path that ray `ray` continues without a change of its counters.
+static uint32_t next_seed(const glint_rays *rays, uint32_t ray)
+{
+    return 2 * (rays->scatters[ray] + rays->depth[ray] + rays->passes[ray]);
+}
+
 /// Draws the continuation of a path, with a probability proportional to the shares of its light.
 static int choose_branch(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
                          const double share[CHOICES], double all)
@@ -123,7 +130,7 @@ static int choose_branch(const struct glint_indirect *indirect, uint64_t number,
         likely++;
     if (!(share[likely] < all))
         return likely;
-    glint_indirect_draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray] + rays->passes[ray]) + 1, number_of);
+    glint_indirect_draw(indirect, rays->point[ray], number, next_seed(rays, ray) + 1, number_of);
     while (last > 0 && !(share[last] > 0))
         last--;
     for (int k = 0; k < last; k++) {
@@ -145,11 +152,14 @@ static bool spreads_at(const glint_batch *batch, const glint_plan *plan, uint32_
     return (what == EVENT_MIRRORED || what == EVENT_REFRACTED) && is_rough(batch, plan, i);
 }
 
-/// Fills the shares of the mirrored and of the refracted ray of a rough surface.
-static void spread_shares(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i, double share[2])
+/// Fills the shares of the mirrored and of the refracted ray of a rough surface, at the facet that path `number` draws.
+static void spread_shares(const struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
+                          double share[2])
 {
-    const double weight[3] = { batch->rays->weight[0][batch->ray_of[i]], batch->rays->weight[1][batch->ray_of[i]],
-                               batch->rays->weight[2][batch->ray_of[i]] };
+    const glint_batch *batch = &indirect->batch;
+    const uint32_t ray = batch->ray_of[i];
+    double square[2], disk[2];
+    const double weight[3] = { batch->rays->weight[0][ray], batch->rays->weight[1][ray], batch->rays->weight[2][ray] };
     glint_bounce_material buffer;
     if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
         const glint_bounce_material *m = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer);
@@ -157,7 +167,10 @@ static void spread_shares(const glint_batch *batch, const glint_tile_frame *fram
             share[0] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? fmax(m->f0[c], LEAST_SHARE) : 1));
         return;
     }
-    glint_rough_shares(batch, &batch->tile, frame, i, NULL, share);
+    glint_indirect_draw(indirect, batch->rays->point[ray], number, next_seed(batch->rays, ray), square);
+    disk[0] = sqrt(square[0]) * glint_cos(2 * PI * square[1]);
+    disk[1] = sqrt(square[0]) * glint_sin(2 * PI * square[1]);
+    glint_rough_shares(batch, &batch->tile, frame, i, disk, share);
     share[0] *= mean(weight);
     share[1] *= mean(weight);
 }
@@ -185,7 +198,7 @@ static event choose(struct glint_indirect *indirect, const glint_tile_frame *fra
     if (is_rough(batch, frame->plan, i)) {
         share[1] = share[2] = 0;
         if (rays->depth[ray] < frame->plan->desc.max_depth)
-            spread_shares(batch, frame, i, share + 1);
+            spread_shares(indirect, frame, number, i, share + 1);
     }
     const double all = ((share[0] + share[1]) + share[2]) + share[3];
     if (!(all > 0))
