@@ -49,8 +49,8 @@ double glint_tile_direction(const glint_tile *tile, glint_precision precision, i
         return glint_real_at(tile->rays.direction[c], precision, i);
     const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
     const uint32_t lane = i % GLINT_GROUP;
-    const double d = glint_real_at(tile->rays.across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
-                     glint_real_at(tile->rays.down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
+    const double d = glint_real_at(tile->camera.across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
+                     glint_real_at(tile->camera.down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
     return precision == GLINT_FLOAT ? (float)d : d;
 }
 

@@ -207,4 +207,23 @@ for ending, options in pairs {
   end
 end
 
+-- ---- Holes in gathered pixels ---------------------------------------------------------------------------------------
+
+-- The chosen pixels are gathered only if the picture has no pass of light. Their rays see the same holes either way.
+local function lantern(options)
+  local path = os.tmpname()
+  os.execute(("%s scripts/lantern.lua -f 1 --samples 3 --adaptive 1 --size 96x64 --quiet --force %s -o %s_%%04d.png 2>%s")
+    :format(command, options, path, path))
+  os.remove(path .. "_0001.diffuse.png")
+  return read(path .. "_0001.png"), read(path)
+end
+for _, precision in ipairs { "double", "float" } do
+  local want, said = lantern("--threads 1 --passes diffuse --precision " .. precision)
+  check(want, "a lantern: %s", said)
+  for _, threads in ipairs { 1, 2, 7 } do
+    local gathered = lantern(("--threads %d --precision %s"):format(threads, precision))
+    check(gathered == want, "holes in gathered pixels: %s precision, %d threads", precision, threads)
+  end
+end
+
 tally.finish()

@@ -21,8 +21,8 @@ static void gather_directions(const glint_tile *tile, glint_precision precision,
             glint_reals_of(tile->rays.direction[c], precision, g, out[c]);
             continue;
         }
-        glint_reals_of(tile->rays.across, precision, 3 * (g % tile->groups_across) + c, out[c]);
-        glint_reals_of(tile->rays.down, precision, 3 * (g / tile->groups_across) + c, down);
+        glint_reals_of(tile->camera.across, precision, 3 * (g % tile->groups_across) + c, out[c]);
+        glint_reals_of(tile->camera.down, precision, 3 * (g / tile->groups_across) + c, down);
         for (int i = 0; i < GLINT_GROUP; i++)
             out[c][i] = (double)(float)(out[c][i] + down[i]);
     }
@@ -38,8 +38,8 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
     if (glint_tile_has_arrays(tile) || frame->plan->desc.precision == GLINT_FLOAT) {
         gather_directions(tile, frame->plan->desc.precision, g, buffer);
     } else {
-        args.direction = (const double *)tile->rays.across + (size_t)3 * GLINT_GROUP * (g % tile->groups_across);
-        args.more = (const double *)tile->rays.down + (size_t)3 * GLINT_GROUP * (g / tile->groups_across);
+        args.direction = (const double *)tile->camera.across + (size_t)3 * GLINT_GROUP * (g % tile->groups_across);
+        args.more = (const double *)tile->camera.down + (size_t)3 * GLINT_GROUP * (g / tile->groups_across);
     }
     frame->stages->eyes(&args);
 }

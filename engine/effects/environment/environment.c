@@ -81,8 +81,8 @@ static void load_directions(const glint_tile *tile, glint_precision precision, u
             load_group(tile->rays.direction[c], precision, (size_t)g * GLINT_GROUP, d[c]);
             continue;
         }
-        load_group(tile->rays.across, precision, (3 * x + c) * GLINT_GROUP, d[c]);
-        load_group(tile->rays.down, precision, (3 * y + c) * GLINT_GROUP, down);
+        load_group(tile->camera.across, precision, (3 * x + c) * GLINT_GROUP, d[c]);
+        load_group(tile->camera.down, precision, (3 * y + c) * GLINT_GROUP, down);
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
             d[c][i] += down[i];
         for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)

@@ -172,8 +172,8 @@ static void load_directions_to_eye(const gathering *g, int c, double *restrict o
         return;
     }
     const uint32_t group = (uint32_t)(g->at / GLINT_GROUP), columns = tile->groups_across;
-    const float *across = (const float *)tile->rays.across + (3 * (group % columns) + (uint32_t)c) * GLINT_GROUP;
-    const float *down = (const float *)tile->rays.down + (3 * (group / columns) + (uint32_t)c) * GLINT_GROUP;
+    const float *across = (const float *)tile->camera.across + (3 * (group % columns) + (uint32_t)c) * GLINT_GROUP;
+    const float *down = (const float *)tile->camera.down + (3 * (group / columns) + (uint32_t)c) * GLINT_GROUP;
     for (int i = 0; i < GLINT_GROUP; i++)
         out[i] = -(double)(across[i] + down[i]);
 }
