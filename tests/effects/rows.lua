@@ -69,7 +69,7 @@ return {
     call = function(_, _, scene) scene.indirect = { samples = 1, bounces = 1 } end },
   { name = "ambient_occlusion", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter", "open_sky" },
     call = function(_, _, scene) scene.ambient_occlusion = { samples = 1, distance = 5 } end },
-  { name = "visible_light", stage = "visible_lights", functions = { "visible_light" },
+  { name = "visible_light", stage = "visible_lights", functions = { "add_brightness" },
     call = function(glint, parts, scene)
       scene:remove(parts.lamp)
       scene:add(glint.sphere_light { position = { 0, 6, 0 }, radius = 1, samples = 4, visible = true })
@@ -81,7 +81,7 @@ return {
       scene:add(glint.plane { point = { 0, 1000, 0 }, normal = { 0, 1, 0 },
         material = glint.material { transmission = 1, ior = 1, absorption = 0.01 } })
     end },
-  { name = "environment", part = "PROGRAM", stage = "environment", functions = { "environment" },
+  { name = "environment", part = "PROGRAM", stage = "environment", functions = { "put_directions" },
     call = function(glint, _, scene) scene.background = glint.pattern(function(d) return 0.5 + 0.25 * d.y end) end },
   { name = "pattern", part = "PROGRAM", stage = "pattern", functions = { "^program$", "glint_tile_pattern" },
     call = function(glint, parts) parts.ball.diffuse = glint.pattern(function(p) return glint.fract(p.y) end) end },
@@ -89,7 +89,7 @@ return {
     call = function(glint, parts)
       parts.ball.model = glint.shader(function(s) return s.kd * s.light * s.n:dot(s.l) end)
     end },
-  { name = "bump", part = "PROGRAM", functions = { "^glint_tile_bump$" },
+  { name = "bump", part = "PROGRAM", functions = { "turn_normals" },
     call = function(glint, parts)
       parts.ball.bump = glint.pattern(function(p) return 0.1 * glint.sin(9 * p.x) end)
     end },

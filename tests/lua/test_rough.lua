@@ -23,43 +23,45 @@ local function albedo(material, cosine, n)
   return sum / (n * n)
 end
 
--- Renders a ball seen by parallel rays, and returns a function of the column that gives a pass and the cosine there.
+-- Renders the middle row of a ball seen by parallel rays, and returns a function of the column that gives a pass and the cosine there.
 local SIDE <const> = 63
 local function ball(material, fields, options)
   local scene = glint.scene { glint.sphere { center = { 0, 0, 0 }, radius = 1, material = material } }
-  scene.camera = glint.camera { eye = { 0, 0, 20 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2.2 }
+  scene.camera = glint.camera { eye = { 0, 0, 20 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2.2 / SIDE }
   for name, value in pairs(fields) do
     if type(name) == "number" then scene:add(value) else scene[name] = value end
   end
-  local given = { width = SIDE, height = SIDE, samples = 16, passes = "beauty,mirror,transmission,specular" }
+  local given = { width = SIDE, height = 1, samples = 16, passes = "beauty,mirror,transmission,specular" }
   for name, value in pairs(options or {}) do given[name] = value end
   local image = scene:render(given)
   return function(x, pass)
     local away = (SIDE // 2 - x) * 2.2 / SIDE
-    return image:pixel(x, SIDE // 2, pass), math.sqrt(1 - away * away)
+    return image:pixel(x, 0, pass), math.sqrt(1 - away * away)
   end
 end
 
 -- In a white furnace a ball loses only what single scattering loses.
 function tests.furnace()
   for _, distribution in ipairs(DISTRIBUTIONS) do
-    for _, roughness in ipairs { 0.4, 0.6, 1 } do
+    for _, roughness in ipairs { 0.5, 0.7, 1 } do
+      local want = {} -- by column
       local material = glint.material { model = "cook_torrance", f0 = 1, diffuse = 0, roughness = roughness, distribution = distribution }
       for _, precision in ipairs { "double", "float" } do
         local at = ball(material, { background = 1, reflection_samples = 256 }, { precision = precision })
         for _, x in ipairs { 31, 20, 8 } do
           local got, cosine = at(x, "mirror")
-          near(got, albedo(material, cosine, 200), 1.5e-3, ("%s %g, %s, cosine %.3f"):format(distribution, roughness, precision, cosine))
+          want[x] = want[x] or albedo(material, cosine, 80)
+          near(got, want[x], 1.5e-3, ("%s %g, %s, cosine %.3f"):format(distribution, roughness, precision, cosine))
         end
       end
     end
     local fresnel = glint.material { model = "cook_torrance", f0 = { 0.04, 0.5, 1 }, diffuse = 0, roughness = 0.5, distribution = distribution }
     local got, cosine = ball(fresnel, { background = 1, reflection_samples = 256 })(12, "mirror")
-    near(got, albedo(fresnel, cosine, 200), 1e-3, distribution .. ": Schlick's reflectance at the facet")
+    near(got, albedo(fresnel, cosine, 80), 1e-3, distribution .. ": Schlick's reflectance at the facet")
     local mirror = glint.material { diffuse = 0, mirror = 1, roughness = 0.6, distribution = distribution }
     local white = glint.material { model = "cook_torrance", f0 = 1, roughness = 0.6, distribution = distribution }
     local seen, c = ball(mirror, { background = 1, reflection_samples = 256 })(15, "mirror")
-    near(seen, albedo(white, c, 200), 1.5e-3, distribution .. ": a rough mirror is white facets")
+    near(seen, albedo(white, c, 80), 1.5e-3, distribution .. ": a rough mirror is white facets")
   end
 end
 
@@ -72,7 +74,7 @@ function tests.step_sky()
     for _, x in ipairs { 31, 24, 38 } do
       local got, cosine = at(x, "mirror")
       local away = (x - SIDE // 2) * 2.2 / SIDE
-      local normal, n, sum = { away, 0, cosine }, 300, 0
+      local normal, n, sum = { away, 0, cosine }, 120, 0
       for i = 0, n - 1 do
         local c = (i + 0.5) / n -- height above the surface's horizon
         local s = math.sqrt(1 - c * c)
@@ -206,7 +208,8 @@ function tests.hard_cases()
         for _, fields in ipairs { { model = "cook_torrance", f0 = 1 }, { mirror = 1 }, { fresnel = true, transmission = 1 } } do
           local own = { diffuse = 0, roughness = roughness, distribution = distribution, bump = bump or nil }
           for name, value in pairs(fields) do own[name] = value end
-          local scene = glint.scene { background = 1, reflection_samples = 4, camera = glint.camera { eye = { 0, 1e-3, 9 }, at = { 0, 0, 0 }, fov = 2 },
+          local camera = glint.camera { eye = { 0, 1e-3, 9 }, at = { 0, 0, 0 }, fov = 2 }
+          local scene = glint.scene { background = 1, reflection_samples = 4, camera = camera,
             glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material(own) } }
           local image = scene:render { width = 16, height = 12 }
           local least, most = math.huge, -math.huge
