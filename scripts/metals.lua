@@ -1,8 +1,8 @@
 -- Gold, copper and glass, from polished to frosted: rough surfaces show their surroundings blurred.
 --
--- A rough surface is a field of tiny mirrors. Each ray that meets it leaves in the direction of one of them, so the
--- picture in the surface is the mean of many mirror pictures: the rougher, the wider their spread. Lamps are part of it:
--- their highlights grow and dim in the same way.
+-- A rough surface is a field of tiny mirrors. Each ray that meets it is reflected by one of them, so the picture in the
+-- surface is the mean of many mirror pictures: the rougher, the wider their spread. Highlights of lamps grow and dim in
+-- the same way.
 --     glint scripts/metals.lua
 --     glint scripts/metals.lua --set distribution=beckmann      facets with fewer steep slopes
 --     glint scripts/metals.lua --set rays=64                    less noise
@@ -38,7 +38,8 @@ local scene = glint.scene {
 for row, look in ipairs(LOOKS) do
   for i, roughness in ipairs(ROUGHNESS) do
     look.roughness, look.distribution = roughness, P.distribution
-    scene:add(glint.sphere { center = { 1.75 * (i - 3), 0.75, 2.1 * row - 4.2 }, radius = 0.75, material = glint.material(look) })
+    local center = { 1.75 * (i - 3), 0.75, 2.1 * row - 4.2 }
+    scene:add(glint.sphere { center = center, radius = 0.75, material = glint.material(look) })
   end
 end
 

@@ -219,7 +219,8 @@ function tests.hard_cases()
               least, most = math.min(least, v == v and v or -1), math.max(most, v)
             end
           end
-          check(least >= 0 and most <= (distribution == "ggx" and 1.05 or 2.7), "%s, roughness %g, %s: light of %g to %g", distribution, roughness, fields.model or "phong", least, most)
+          check(least >= 0 and most <= (distribution == "ggx" and 1.05 or 2.7), "%s, roughness %g, %s: light of %g to %g",
+            distribution, roughness, fields.model or "phong", least, most)
         end
       end
     end
