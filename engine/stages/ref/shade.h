@@ -1,6 +1,12 @@
 // The specification of shade in plain C: Phong, Blinn-Phong and microfacets, lights added in their order. Contract:
 // stages.h.
 
+/// Returns the material of a hit.
+static uint32_t material_at(const glint_shade_args *args, uint32_t i)
+{
+    return args->only ? *args->only : args->material[i];
+}
+
 /// Returns a material's value at a sample: the plane's value if a plane replaces it, otherwise the material's own.
 static float number_at(const glint_shade_material *material, unsigned which, float number, const float *plane,
                        uint32_t i)
@@ -45,7 +51,7 @@ typedef struct factors {
 /// Adds w S of microfacets. Returns whether the half vector is defined.
 static bool add_facets(const glint_shade_args *args, const glint_shade_light *light, float w, uint32_t i, factors *sum)
 {
-    const glint_shade_material *material = &args->materials[args->material[i]];
+    const glint_shade_material *material = &args->materials[material_at(args, i)];
     float sine2 = light->sine2[i], l = light->cosine[i], v = args->facing[i];
     if (!(sine2 > GLINT_NO_SPECULAR))
         return false;
@@ -60,7 +66,7 @@ static bool add_facets(const glint_shade_args *args, const glint_shade_light *li
 /// Adds the factors of a light. Returns whether there is a highlight.
 static bool add_factors(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, factors *sum)
 {
-    const glint_shade_material *material = &args->materials[args->material[i]];
+    const glint_shade_material *material = &args->materials[material_at(args, i)];
     if (light->summed) {
         bool shiny = args->highlights && material->highlight != GLINT_HIGHLIGHT_NONE;
         sum->diffuse = light->cosine[i];
@@ -110,7 +116,7 @@ static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i,
         }
         k++;
     } while (k < args->light_count && args->lights[k].joined);
-    const glint_shade_material *material = &args->materials[args->material[i]];
+    const glint_shade_material *material = &args->materials[material_at(args, i)];
     for (int c = 0; c < 3 && any; c++) {
         const float *kd = args->planes ? args->planes->diffuse[c] : NULL;
         const float *ks = args->planes ? args->planes->specular[c] : NULL;
@@ -167,7 +173,7 @@ static void store_sums(const terms *total, double *const sum[GLINT_TERM_COUNT][3
 
 static double ambient_at(const glint_shade_args *args, uint32_t i, int c)
 {
-    const glint_shade_material *material = &args->materials[args->material[i]];
+    const glint_shade_material *material = &args->materials[material_at(args, i)];
     if (material->planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE)
         return (double)args->planes->diffuse[c][i] * args->planes->ambient_light[c];
     if (material->planes & GLINT_PLANE_AMBIENT)
@@ -186,7 +192,7 @@ static void add_sample(const glint_shade_args *args, uint32_t i, terms *sum)
         if (hit)
             sum->value[GLINT_TERM_AMBIENT][c] += ambient_at(args, i, c);
     }
-    const glint_shade_material *material = hit ? &args->materials[args->material[i]] : NULL;
+    const glint_shade_material *material = hit ? &args->materials[material_at(args, i)] : NULL;
     const bool shaded = material && material->planes & GLINT_PLANE_SHADED;
     bool lit = false;
     for (uint32_t k = 0; k < args->light_count; k++)
