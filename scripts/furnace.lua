@@ -6,16 +6,36 @@
 -- and thin differ, the model is not reciprocal: plain Phong is not. The other three are, so one curve hides the other.
 --     glint scripts/furnace.lua                       furnace.png; -o furnace.svg or furnace.pdf for print
 --     glint scripts/furnace.lua --set model=ward      a shader of scripts/lib/glint/models.lua in black, too
+--     glint scripts/furnace.lua --set picture=balls   white balls in white surroundings: what they lose shows as grey
 local glint = require "glint"
 local models = require "glint.models"
 
 local P = glint.params {
+  picture = { "curves", choices = { "curves", "balls" }, doc = "curves of the formulas, or rendered balls" },
   steps = { 40, min = 8, max = 200, doc = "rings of directions that are summed up" },
   model = {
     "none", choices = { "none", "phong", "blinn_phong", "ward", "toon", "gooch" },
     doc = "a shader to be drawn beside them",
   },
 }
+
+-- Balls of white facets, GGX above and Beckmann below, rougher to the right. Without loss they would be invisible.
+-- Light that one facet sends to the next is not followed, so rough balls are grey, as the curves say.
+if P.picture == "balls" then
+  local furnace = glint.scene {
+    background = 1, reflection_samples = 64,
+    camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, projection = "orthographic", height = 4.8 },
+  }
+  for row, distribution in ipairs { "ggx", "beckmann" } do
+    for i = 1, 5 do
+      local white = glint.material {
+        model = "cook_torrance", f0 = 1, diffuse = 0, roughness = i / 5, distribution = distribution,
+      }
+      furnace:add(glint.sphere { center = { 2.3 * (i - 3), 3.45 - 2.3 * row, 0 }, radius = 1, material = white })
+    end
+  end
+  return glint.animation { scene = furnace, frames = 1, width = 960, height = 400 }
+end
 
 local POINTS <const>, WIDEST <const> = 48, 88 -- directions, up to so many degrees from the normal
 local CURVES <const> = {
