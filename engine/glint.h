@@ -485,9 +485,9 @@ typedef struct glint_material_desc {
     bool normalized;
     /// blinn_phong: the exponent is 4 s, which gives the highlight closest to Phong's. Other models ignore it
     bool matched;
-    /// false: the default, 0.3 with cook_torrance and otherwise 0
+    /// false: models other than cook_torrance are smooth. cook_torrance always reads `roughness`
     bool has_roughness;
-    /// 0 .. 1. cook_torrance: below 1e-9 it counts as 1e-9: a highlight narrower than any pixel. Other models: 0 is a
+    /// 0 .. 1, default 0.3. cook_torrance: below 1e-9 it counts as 1e-9: a highlight narrower than any pixel. Other models: 0 is a
     /// smooth mirror or smooth glass; above, reflected and refracted rays have the distribution of microfacets, as
     /// with cook_torrance
     double roughness;

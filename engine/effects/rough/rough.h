@@ -26,9 +26,9 @@ double glint_rough_reflectance(const glint_bounce_material *m, int c, double cos
 void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3]);
 
 /// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
-/// direction, side, depth, media; multiplies the weight. disk: a point of the unit disk, where equal areas are equally
-/// likely. square: the point of the unit square that it belongs to; only read under a sky with bright parts. The weight is 0 where the facet that was drawn sends the ray through the surface, or where another facet
-/// is in its way.
+/// direction, side, depth, media; multiplies the weight. The weight is 0 where the drawn facet sends the ray through the
+/// surface. disk: a point of the unit disk, where equal areas are equally likely. square: the point of the unit square
+/// that it belongs to; only read under a sky with bright parts.
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        const double disk[2], const double *square, glint_branch branch, glint_ray *ray);
 
