@@ -5,6 +5,7 @@
 #include "engine/effects/prepare.h"
 #include "engine/plan/light_groups.h"
 #include "engine/scene/objects.h"
+#include <stdlib.h>
 
 static bool never(const glint_plan *plan)
 {
@@ -121,7 +122,10 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
 glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error)
 {
-    (void)scene, (void)desc, (void)times, (void)count, (void)out;
+    (void)scene, (void)desc, (void)out;
+    for (size_t i = 0; times && i < count; i++)
+        glint_plan_destroy(times[i]);
+    free(times);
     return glint_fail(error, GLINT_ERR_UNSUPPORTED, MESSAGE("camera.shutter", "shutter", "shutter"));
 }
 #endif
