@@ -51,6 +51,7 @@ static world new_world(const double eye[3], const double at[3], int width, int h
     OK(glint_scene_create(&w.scene, &error));
     glint_scene_desc desc = *glint_scene_get(w.scene);
     desc.camera = made;
+    desc.reflection_samples = 2;
     OK(glint_scene_set(w.scene, &desc, &error));
     glint_camera_release(made);
     w.render.width = width;

@@ -332,7 +332,7 @@ static void random_world(world *w)
     glint_scene_desc scene = *glint_scene_get(w->scene);
     scene.ambient[0] = scene.ambient[1] = scene.ambient[2] = 0.1;
     scene.has_indirect = one_in(6);
-    scene.indirect_samples = scene.indirect_bounces = 1;
+    scene.indirect_samples = scene.indirect_bounces = scene.reflection_samples = 1;
     OK(glint_scene_set(w->scene, &scene, &error));
     w->render = glint_render_desc_default();
     w->render.width = 72;
