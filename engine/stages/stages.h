@@ -25,42 +25,51 @@
 #include "engine/stages/contract/program.h"
 #include "engine/stages/contract/tables.h"
 
+/// The kernels: ROW(WITH, RESULT, NAME, PARAMETERS) for each one. Builds without WITH have no such kernel. The kernels of
+/// geometry exist for each precision.
+#define GLINT_GEOMETRY_KERNELS(ROW) \
+    ROW(true, void, camera, (const glint_camera_args *args)) \
+    ROW(true, bool, in_sight, (const glint_cast_args *args)) \
+    ROW(true, void, cast_bundle, (const glint_cast_args *args)) \
+    ROW(true, void, cast_rays, (const glint_cast_args *args)) \
+    ROW(true, void, surface, (const glint_surface_args *args)) \
+    ROW(true, void, lit_surface, (const glint_surface_args *surface, const glint_light_args *light)) \
+    ROW(GLINT_WITH_FACET, void, view, (const glint_view_args *args)) \
+    ROW(true, void, light, (const glint_light_args *args)) \
+    ROW(GLINT_WITH_FACET, void, facet, (const glint_facet_args *args)) \
+    ROW(GLINT_WITH_SHADOW, void, occlude, (const glint_occlude_args *args)) \
+    ROW(GLINT_WITH_AREA && GLINT_WITH_SHADOW, bool, soft_light, (const glint_soft_args *args)) \
+    ROW(GLINT_WITH_BOUNCE, void, bounce, (const glint_bounce_args *args)) \
+    ROW(GLINT_WITH_VERTEX, void, vertex, (const glint_vertex_args *args)) \
+    ROW(GLINT_WITH_INDIRECT, void, scatter, (const glint_scatter_args *args)) \
+    ROW(GLINT_WITH_INDIRECT, void, spread, (const glint_spread_args *args)) \
+    ROW(GLINT_WITH_RASTER, void, raster, (const glint_raster_args *args))
+#define GLINT_SAMPLE_KERNELS(ROW) \
+    ROW(GLINT_WITH_PROGRAM, void, program, (const glint_program_args *args)) \
+    ROW(GLINT_WITH_PROGRAM, void, unit, (const glint_unit_args *args)) \
+    ROW(GLINT_WITH_PROGRAM, void, choose, (const glint_choose_args *args)) \
+    ROW(GLINT_WITH_DERIVATIVE, void, eyes, (const glint_eyes_args *args)) \
+    ROW(GLINT_WITH_DERIVATIVE, void, bend, (const glint_bend_args *args)) \
+    ROW(GLINT_WITH_DERIVATIVE, void, slope, (const glint_slope_args *args)) \
+    ROW(GLINT_WITH_DERIVATIVE, void, arrival, (const glint_arrival_args *args)) \
+    ROW(GLINT_WITH_INDIRECT, void, sky, (const glint_sky_args *args)) \
+    ROW(true, void, shade, (const glint_shade_args *args)) \
+    ROW(GLINT_WITH_SAMPLES, void, resolve, (const glint_resolve_args *args)) \
+    ROW(GLINT_WITH_SAMPLES, void, resolve_samples, (const glint_shade_args *sample, uint32_t count)) \
+    ROW(GLINT_WITH_SAMPLES, void, estimate, (const glint_estimate_args *args)) \
+    ROW(GLINT_WITH_SAMPLES, void, range, (const glint_range_args *args, float out[2])) \
+    ROW(GLINT_WITH_SAMPLES, void, differ, (const glint_differ_args *args, glint_differences *out)) \
+    ROW(true, void, tone, (const glint_tone_args *args))
+
+#define GLINT_KERNEL_MEMBER(with, result, name, parameters) result(*name) parameters;
+
 /// The stages compiled for one instruction set.
 typedef struct glint_stages {
     const char *name;
     struct glint_geometry_stages {
-        void (*camera)(const glint_camera_args *args);
-        bool (*in_sight)(const glint_cast_args *args);
-        void (*cast_bundle)(const glint_cast_args *args);
-        void (*cast_rays)(const glint_cast_args *args);
-        void (*surface)(const glint_surface_args *args);
-        void (*lit_surface)(const glint_surface_args *surface, const glint_light_args *light);
-        void (*view)(const glint_view_args *args);
-        void (*light)(const glint_light_args *args);
-        void (*facet)(const glint_facet_args *args);
-        void (*occlude)(const glint_occlude_args *args);
-        bool (*soft_light)(const glint_soft_args *args);
-        void (*bounce)(const glint_bounce_args *args);
-        void (*vertex)(const glint_vertex_args *args);
-        void (*scatter)(const glint_scatter_args *args);
-        void (*spread)(const glint_spread_args *args);
-        void (*raster)(const glint_raster_args *args);
+        GLINT_GEOMETRY_KERNELS(GLINT_KERNEL_MEMBER)
     } geometry[2]; ///< by glint_precision: double, float
-    void (*program)(const glint_program_args *args);
-    void (*unit)(const glint_unit_args *args);
-    void (*choose)(const glint_choose_args *args);
-    void (*eyes)(const glint_eyes_args *args);
-    void (*bend)(const glint_bend_args *args);
-    void (*slope)(const glint_slope_args *args);
-    void (*arrival)(const glint_arrival_args *args);
-    void (*sky)(const glint_sky_args *args);
-    void (*shade)(const glint_shade_args *args);
-    void (*resolve)(const glint_resolve_args *args);
-    void (*resolve_samples)(const glint_shade_args *sample, uint32_t count);
-    void (*estimate)(const glint_estimate_args *args);
-    void (*range)(const glint_range_args *args, float out[2]);
-    void (*differ)(const glint_differ_args *args, glint_differences *out);
-    void (*tone)(const glint_tone_args *args);
+    GLINT_SAMPLE_KERNELS(GLINT_KERNEL_MEMBER)
 } glint_stages;
 
 extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_avx2, glint_stages_avx512;

@@ -304,33 +304,12 @@ static void tone(const glint_tone_args *args)
 
 // ------------------------------------------------------------------------------------------------------------------
 
-// The entries of one precision, one per line.
-#define GEOMETRY_STAGES(real) \
-    { \
-        .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
-        .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
-        .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .spread = spread_facets_##real, \
-        .raster = raster_##real, \
-        .soft_light = soft_light_##real, \
-    }
+#define ENTRY(with, result, name, parameters) .name = name,
+#define ENTRY_DOUBLE(with, result, name, parameters) .name = name##_double,
+#define ENTRY_FLOAT(with, result, name, parameters) .name = name##_float,
 
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
-    .program = program,
-    .unit = unit,
-    .choose = choose,
-    .eyes = eyes,
-    .bend = bend,
-    .slope = slope,
-    .arrival = arrival,
-    .sky = sky,
-    .shade = shade,
-    .resolve = resolve,
-    .resolve_samples = resolve_samples,
-    .estimate = estimate,
-    .range = range,
-    .differ = differ,
-    .tone = tone,
+    .geometry = { { GLINT_GEOMETRY_KERNELS(ENTRY_DOUBLE) }, { GLINT_GEOMETRY_KERNELS(ENTRY_FLOAT) } },
+    GLINT_SAMPLE_KERNELS(ENTRY)
 };

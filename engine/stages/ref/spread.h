@@ -32,7 +32,7 @@ static void NAME(spread_sample)(const glint_spread_args *args, uint32_t i)
     ((REAL *)args->direction[2])[i] = (out.x * tangent.z + out.y * bitangent.z) + out.z * n.z;
 }
 
-static void NAME(spread_facets)(const glint_spread_args *args)
+static void NAME(spread)(const glint_spread_args *args)
 {
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
         if (args->wanted[i / GLINT_GROUP])

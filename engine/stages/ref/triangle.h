@@ -196,7 +196,7 @@ static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) 
     return NAME(dot)(plane.m, q);
 }
 
-static REAL NAME(spread)(NAME(parted) plane)
+static REAL NAME(plane_spread)(NAME(parted) plane)
 {
     return (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
 }
@@ -207,7 +207,7 @@ static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3
 {
     REAL rounding, h = NAME(height)(plane, prim, point, &rounding);
     if (on_surface)
-        rounding = rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(point));
+        rounding = rounding + NAME(plane_spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(point));
     return NAME(abs)(h) <= rounding;
 }
 
@@ -233,7 +233,7 @@ static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL si
     for (int j = 0; j < 3; j++) {
         NAME(vec3) corner = NAME(rounded)(other->corner[j]);
         REAL rounding, h = NAME(height)(plane, prim, corner, &rounding);
-        if (NAME(abs)(h) > rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
+        if (NAME(abs)(h) > rounding + NAME(plane_spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
             ((h > 0 && side > 0) || (h < 0 && side < 0)))
             return true;
     }
@@ -254,12 +254,12 @@ static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_
                                        NAME(largest)(NAME(sub)(NAME(rounded)(from->corner[2]), v0))) +
                                       NAME(largest)(origin));
     REAL rounding, h = NAME(height)(here, prim, origin, &rounding);
-    bool begins = !(NAME(abs)(h) > NAME(spread)(here) * slack + rounding);
+    bool begins = !(NAME(abs)(h) > NAME(plane_spread)(here) * slack + rounding);
     NAME(relative_corners)(prim, origin, table->scale, corner);
     NAME(ray_edges) seen = NAME(make_ray_edges)(corner, direction);
     REAL distance = NAME(plane_distance)(table, prim, seen, origin, direction);
     bool soon = distance > 0 && distance <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
-    bool still_on = distance * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
+    bool still_on = distance * NAME(abs)(there.light) <= NAME(plane_spread)(there) * slack;
     bool by_edge = distance > 0 && !NAME(passes)(seen);
     if (!begins && !(soon && still_on) && !by_edge)
         return false;

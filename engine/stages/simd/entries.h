@@ -12,40 +12,11 @@
 #define GLINT_ENTRY_OF(isa, name) GLINT_ENTRY_(isa, name)
 #define GLINT_ENTRY(name) GLINT_ENTRY_OF(GLINT_ISA, name)
 
-#define GLINT_DECLARE(name) extern __typeof__(*((glint_stages *)0)->name) GLINT_ENTRY(name);
-#define GLINT_DECLARE_GEOMETRY(name) \
-    extern __typeof__(*((struct glint_geometry_stages *)0)->name) GLINT_ENTRY(name##_f64), GLINT_ENTRY(name##_f32);
+#define GLINT_DECLARE(with, result, name, parameters) extern result GLINT_ENTRY(name) parameters;
+#define GLINT_DECLARE_GEOMETRY(with, result, name, parameters) \
+    extern result GLINT_ENTRY(name##_f64) parameters, GLINT_ENTRY(name##_f32) parameters;
 
-GLINT_DECLARE_GEOMETRY(camera)
-GLINT_DECLARE_GEOMETRY(in_sight)
-GLINT_DECLARE_GEOMETRY(cast_bundle)
-GLINT_DECLARE_GEOMETRY(cast_rays)
-GLINT_DECLARE_GEOMETRY(raster)
-GLINT_DECLARE_GEOMETRY(surface)
-GLINT_DECLARE_GEOMETRY(lit_surface)
-GLINT_DECLARE_GEOMETRY(vertex)
-GLINT_DECLARE_GEOMETRY(light)
-GLINT_DECLARE_GEOMETRY(view)
-GLINT_DECLARE_GEOMETRY(facet)
-GLINT_DECLARE_GEOMETRY(occlude)
-GLINT_DECLARE_GEOMETRY(soft_light)
-GLINT_DECLARE_GEOMETRY(bounce)
-GLINT_DECLARE_GEOMETRY(scatter)
-GLINT_DECLARE_GEOMETRY(spread)
-GLINT_DECLARE(sky)
-GLINT_DECLARE(program)
-GLINT_DECLARE(unit)
-GLINT_DECLARE(choose)
-GLINT_DECLARE(eyes)
-GLINT_DECLARE(bend)
-GLINT_DECLARE(slope)
-GLINT_DECLARE(arrival)
-GLINT_DECLARE(shade)
-GLINT_DECLARE(resolve)
-GLINT_DECLARE(resolve_samples)
-GLINT_DECLARE(estimate)
-GLINT_DECLARE(range)
-GLINT_DECLARE(differ)
-GLINT_DECLARE(tone)
+GLINT_GEOMETRY_KERNELS(GLINT_DECLARE_GEOMETRY)
+GLINT_SAMPLE_KERNELS(GLINT_DECLARE)
 
 #endif
