@@ -170,9 +170,10 @@ BEST     = $(if $(call native_has,__AVX512BW__ __AVX512DQ__ __AVX512VL__),avx512
 ifeq ($(KERNELS),native)
   override KERNELS := $(BEST)
 endif
-# The stages are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
-STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/%,$(ENGINE_SRC)))
-STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% engine/stages/program/% engine/stages/derivative/% %/shade/samples.c,$(STAGE_SRC))
+# The stages and the kernels of effects are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
+STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/% $(wildcard engine/effects/*/kernel*.c),$(ENGINE_SRC)))
+STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% engine/stages/program/% engine/stages/derivative/% %/shade/samples.c \
+                  %/adaptive/kernel.c %/kernel_sky.c,$(STAGE_SRC))
 STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
 # FLOAT= leaves out float, for a build in less time: the reference then renders --precision float, with the same bits.
 FLOAT        ?= yes
@@ -212,7 +213,7 @@ $(FILLED): $(BUILD)/%: bindings/% bindings/meta/fill.lua $(BUILD)/glint
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a $(if $(filter $(shell uname -m)-%,$(TARGET)),$(FILLED)) ## the command build/glint and the Lua module build/glint.so
 
-# Only the stages are compiled for an instruction set; engine/stages/ref and select.c are not. Processors with AVX2
+# Only kernels are compiled for an instruction set; engine/stages/ref and select.c are not. Processors with AVX2
 # also have BMI and POPCNT for masks; select.c checks for all of them.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
 # UBSan cannot look into intrinsics. It checks the stages' sources in the generic kernels; ASan checks both.
@@ -220,7 +221,7 @@ FLAGS_avx2   := $(X86_BITS) -mavx2 -mfma $(if $(findstring undefined,$(SANITIZE)
 FLAGS_avx512 := -mavx512f -mavx512dq -mavx512vl -mavx512bw $(FLAGS_avx2)
 # stage_rule SUFFIX, INSTRUCTION SET, FLAGS
 define stage_rule
-$$(BUILD)/engine/stages/%.$(1).o: engine/stages/%.c $$(BUILD)/flags | need
+$$(BUILD)/engine/%.$(1).o: engine/%.c $$(BUILD)/flags | need
 	@mkdir -p $$(@D)
 	$$(call say,CC)
 	$$(Q)$$(CC) $$(COMPILE) $$(PLAIN) $$(LINES) $$(KERNEL_CFLAGS) $$(FLAGS_$(2)) -DGLINT_ISA=$(2) $(3) -MMD -MP -c $$< -o $$@

@@ -5,7 +5,7 @@ local MOST <const> = 4
 local definer, wanted, files = {}, {}, {}
 for _, object in ipairs(arg) do
     local name = object:match("engine/(.*)%.o$")
-    if name and name ~= "effects/list" and not name:find("^stages/") then
+    if name and name ~= "effects/list" and not name:find("^stages/") and not name:find("/kernel[^/]*$") then
         files[#files + 1] = name
         wanted[name] = {}
         local list <close> = assert(io.popen(("nm -g '%s'"):format(object)))

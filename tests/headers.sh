@@ -20,9 +20,9 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h b
     */simd/avx2.h) alone "$header" "$@" -mavx2 -mfma ;;
     */simd/avx512.h) alone "$header" "$@" -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma ;;
     # generic.h includes neon.h on ARM and wasm.h on WebAssembly; ref.c includes its headers for double and for float
-    */simd/neon.h | */simd/wasm.h | engine/stages/ref/*.h) ;;
+    */simd/neon.h | */simd/wasm.h | engine/stages/ref/*.h | engine/effects/*/ref.h | engine/effects/*/ref_*.h) ;;
     engine/stages/contract/*.h) alone "$header" "$@" ;;
-    engine/stages/*/*.h)
+    engine/stages/*/*.h | engine/effects/*/kernel_*.h)
         alone "$header" "$@" -DGLINT_ISA=generic -DGLINT_REAL=64
         alone "$header" "$@" -DGLINT_ISA=generic -DGLINT_REAL=32 ;;
     *) alone "$header" "$@" ;;

@@ -1,13 +1,15 @@
 #!/bin/sh
 # Dependencies go one way: scripts -> bindings -> engine -> engine/stages -> engine/base. Each folder includes its own
-# headers and the headers of the folders named here.
+# headers and the headers of the folders named here. The kernels of an effect, with their contract and reference, follow
+# the rules of engine/stages.
 set -u
 bad=0
 
-# forbid FOLDER PATTERN WHY: no source below FOLDER has a line with PATTERN
+# forbid FOLDERS PATTERN WHY: no source below these folders has a line with PATTERN
 forbid() {
-    if grep -rnE --include='*.[ch]' "$2" "$1"; then
-        echo "^ $1: $3"
+    # shellcheck disable=SC2086
+    if grep -rnE --include='*.[ch]' "$2" $1; then
+        echo "^ $3"
         bad=1
     fi
 }
@@ -20,7 +22,7 @@ includes() {
     for name in "$@"; do allowed="$allowed|$name"; done
     # shellcheck disable=SC2086
     if grep -nE '^#include "' $files /dev/null | grep -vE "#include \"($allowed)(/[^/]*)?\""; then
-        echo "^ $files: includes $* and engine/glint.h only"
+        echo "^ includes $* and engine/glint.h only"
         bad=1
     fi
 }
@@ -48,8 +50,10 @@ done
 layer engine/reuse engine/program engine/plan engine/film $stages $base
 layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
 layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/overlay engine/film $base
-includes 'engine/effects/*/*.[ch]' "$effects" engine/effects engine/frame engine/tile engine/program engine/reuse engine/plan engine/geometry engine/scene \
-    engine/film $stages engine/stages/light $base
+kernels=$(find engine/effects -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')
+includes "engine/stages/*.h engine/stages/*/*.[ch] $kernels" 'engine/stages(/[a-z]*)?' "$effects/(contract|kernel_[a-z]*|ref|ref_[a-z]*).h" $base
+includes "$(find engine/effects/*/ -name '*.[ch]' | grep -vxF "$kernels")" "$effects" engine/effects engine/frame engine/tile engine/program \
+    engine/reuse engine/plan engine/geometry engine/scene engine/film $stages engine/stages/light $base
 layer engine/file engine/ink engine/text engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
 layer engine/sheet engine/ink engine/text engine/overlay engine/file $base
@@ -65,6 +69,6 @@ layer bindings/relight bindings/command bindings/run
 
 scene='glint_(scene|material|light|camera|shape|plan|renderer|image)(_desc)?'
 forbid engine '[<"](lua|lauxlib|lualib)\.h|\blua_State\b' 'the engine has never heard of Lua'
-forbid engine/stages "\\b$scene\\b" 'stages take plain arrays, not scenes'
-forbid engine/stages '#include "engine/(glint|[ac-rt-z][a-z]*/|s[a-su-z][a-z]*/)' 'stages include stages and base only'
+forbid "engine/stages $kernels" "\\b$scene\\b" 'kernels take plain arrays, not scenes'
+forbid "engine/stages $kernels" '#include "engine/glint' 'kernels know nothing of the public interface'
 exit $bad

@@ -1,6 +1,7 @@
 /// The contract of every stage: what it reads and writes. This file has the rules for all stages. contract/tables.h,
 /// contract/hits.h, contract/light.h and contract/film.h describe the individual stages in the order in which they
-/// run; contract/derivative.h and contract/program.h describe the stages of derivatives and programs.
+/// run; contract/derivative.h and contract/program.h describe the stages of derivatives and programs. The contract of
+/// an effect's kernels is in the effect's folder.
 ///
 /// A stage takes plain arrays in and gives plain arrays out. It knows nothing about scenes. Each stage is written
 /// once in the vector vocabulary (simd/) and compiled for every instruction set, and once more, independently, as the
@@ -18,6 +19,12 @@
 #define GLINT_STAGES_H
 
 #include "engine/base/machine.h"
+#include "engine/effects/adaptive/contract.h"
+#include "engine/effects/bounce/contract.h"
+#include "engine/effects/indirect/contract.h"
+#include "engine/effects/microfacet/contract.h"
+#include "engine/effects/raster/contract.h"
+#include "engine/effects/vertex_shading/contract.h"
 #include "engine/stages/contract/derivative.h"
 #include "engine/stages/contract/film.h"
 #include "engine/stages/contract/hits.h"

@@ -54,7 +54,7 @@ static turning find_turning(const glint_batch *batch, const glint_tile *tile, co
     return t;
 }
 
-/// Computes the cosine of the refracted ray, and the reflectance by Fresnel's formula; see stages/shade/bounce.h.
+/// Computes the cosine of the refracted ray, and the reflectance by Fresnel's formula; see effects/bounce/kernel.c.
 static void refract(const turning *t, glint_dual *beyond, glint_dual *reflectance)
 {
     const glint_dual one = dual(1, 0), c = t->cosine, r = t->ratio;

@@ -1,46 +1,9 @@
-/// The contract of the stages that follow the lights, up to the picture: vertex, bounce, scatter, spread, sky, shade,
-/// resolve, differ, tone. Begin with stages.h.
+/// The contract of the stages that follow the lights, up to the picture: scatter, spread, shade, resolve, tone. Begin
+/// with stages.h.
 #ifndef GLINT_CONTRACT_FILM_H
 #define GLINT_CONTRACT_FILM_H
 
 #include "engine/stages/contract/light.h"
-
-// ---- vertex: light that is computed once per face or vertex ----
-
-/// The sum of all lights at a face or vertex, as two terms.
-typedef struct glint_shading_point_light {
-    float term[2][3]; ///< diffuse, specular; finite
-} glint_shading_point_light;
-
-typedef struct glint_vertex_args {
-    uint32_t group_count;
-    const uint16_t *wanted; ///< one bit per lane: the lane's triangle has shading points
-    const uint16_t *back; ///< written by surface
-    const uint32_t *prim;
-    const glint_prim *prims;
-    double scale; ///< the table's scale
-    const glint_shading_points *shading_points;
-    const glint_shading_point_light *light[2]; ///< each shading point's light, seen from the front and from behind
-    const glint_camera_args *camera; ///< the rays, as in glint_surface_args
-    const void *origin[3], *direction[3];
-    double *sum[2][3]; ///< in and out: the light is added in wanted lanes; NULL: the frame does not have this term
-} glint_vertex_args;
-// The arithmetic: ref/triangle.h, in double, with the corner weights that surface uses.
-
-// ---- bounce: reflected and refracted rays ----
-
-typedef struct glint_bounce_args {
-    uint32_t group_count;
-    const uint16_t *wanted; ///< one bit per lane
-    const glint_camera_args *camera; ///< the rays of a perspective camera; NULL: the directions are in `direction`
-    const void *direction[3], *normal[3]; ///< real; the normal as computed by surface
-    const void *ratio; ///< real, > 0: refractive index on the ray's side divided by the index on the far side
-    void *reflected[3], *refracted[3]; ///< out, real, of length 1 up to rounding
-    void *reflectance; ///< out, real, 0 .. 1: reflectance of a dielectric for unpolarised light
-    uint16_t *total; ///< out: the wanted lanes with total internal reflection. Their `refracted` is undefined
-} glint_bounce_args;
-// Outputs are written where wanted. Groups without a wanted lane only get total = 0. Other lanes are undefined. The
-// arithmetic: ref/real.h, by Snell and Fresnel.
 
 // ---- scatter: cosine-distributed directions around normals ----
 
@@ -75,16 +38,6 @@ typedef struct glint_spread_args {
 // arithmetic: ref/spread.h: a point of the disk becomes a cap of the hemisphere of directions from which the facet is
 // seen (J. Dupuy and A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023), in the basis of
 // scatter; G2 is height-correlated.
-
-// ---- sky: the background seen by rays that miss ----
-
-typedef struct glint_sky_args {
-    uint32_t group_count;
-    const uint16_t *missed; ///< one bit per lane
-    const double *weight[3];
-    double background[3];
-    double *sum[3]; ///< in and out: weight times background is added where missed
-} glint_sky_args;
 
 // ---- shade: the terms of each sample ----
 
@@ -168,59 +121,6 @@ typedef struct glint_resolve_args {
 // resolve. `first` is set in all samples, which have at most GLINT_LIGHT_CHUNK lights in total. They share groups,
 // active, background, highlights, film and beauty. Groups without an active lane leave film and beauty unchanged.
 // `sum` is not read, and no material is of GLINT_PLANE_SHADED.
-
-// ---- estimate, range, differ: which neighbouring pixels differ, for adaptive sampling ----
-
-#define GLINT_DIFFER_PAIRS 32 ///< maximum number of pairs per call
-#define GLINT_DIFFER_LENGTH 40 ///< length of each array of a line: kernels may read all of it for any number of pairs
-enum { GLINT_DIFFER_ID, GLINT_DIFFER_NORMAL, GLINT_DIFFER_CODE = 4, GLINT_DIFFER_VALUES = 8 };
-enum { GLINT_DIFFER_ALONG, GLINT_DIFFER_ACROSS, GLINT_DIFFER_FALLING, GLINT_DIFFER_RISING, GLINT_DIFFER_DIRECTIONS };
-
-/// estimate: approximate 16-bit sRGB values before rounding, as a sum of three roots. Its derivative has a relative
-/// error of at most GLINT_ESTIMATE_SHARE. The difference of two estimates therefore has this relative error, plus an
-/// error of at most GLINT_ESTIMATE_SLACK from the rounding of three values and of float.
-#define GLINT_ESTIMATE_SHARE 0.004f
-#define GLINT_ESTIMATE_SLACK 4.0f ///< 16-bit values
-
-typedef struct glint_estimate_args {
-    uint32_t count; ///< a multiple of GLINT_GROUP
-    float gain; ///< factor of the light
-    const float *light;
-    float *code; ///< out
-} glint_estimate_args;
-// The arithmetic: ref/differ.h.
-
-typedef struct glint_range_args {
-    uint32_t count; ///< a multiple of GLINT_GROUP, above 0
-    float gain, floor, top; ///< numbers are multiplied by the gain. Then numbers below `floor`, and NaN, become
-        ///< `floor`, and numbers above `top` become `top`
-    const float *numbers;
-} glint_range_args;
-// range: the minimum and maximum of the numbers.
-
-/// Two adjacent lines of pixels, p[0] .. and q[0] .., both rows or both columns. Each value of a line is an array of
-/// GLINT_DIFFER_LENGTH numbers or more.
-typedef struct glint_differ_args {
-    const float *const *p, *const *q; ///< GLINT_DIFFER_VALUES arrays for each line: object number, normal, estimates.
-        ///< q NULL: there is no second line
-    uint32_t count; ///< number of pairs (p[i], q[i])
-    uint32_t ahead; ///< number of diagonal pairs, and of pairs along a line. Both counts are at most
-        ///< GLINT_DIFFER_PAIRS
-    bool along; ///< true: adjacent pixels of p are also compared with each other
-    bool alpha; ///< true: the estimates have four channels; false: three
-    float low, high; ///< limits for the sum of the differences of two pixels' estimates: below `low` the pixels
-        ///< certainly have the same colour, above `high` they certainly differ
-    float cosine; ///< two normals differ if the cosine of their angle is below this
-} glint_differ_args;
-
-/// One bit per pair. `sure`: the pair differs. `undecided`: the sum of differences is between `low` and `high`, so
-/// that the caller must compare the exact values; undefined for pairs that are sure.
-typedef struct glint_differences {
-    uint32_t sure[GLINT_DIFFER_DIRECTIONS], undecided[GLINT_DIFFER_DIRECTIONS];
-} glint_differences;
-// Bit i stands for the pair (p[i], p[i + 1]) in `along`, (p[i], q[i]) in `across`, (p[i], q[i + 1]) in `falling` and
-// (p[i + 1], q[i]) in `rising`. Pixels differ by object, by normal if both objects are the same and not 0, and by
-// their estimates. The arithmetic: ref/differ.h.
 
 // ---- tone: 8-bit pixel values, written into the image ----
 

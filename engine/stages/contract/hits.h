@@ -1,5 +1,5 @@
-/// The contract of the stages that compute which primitive a ray hits, and where: camera, cast, scan, surface. Begin
-/// with stages.h.
+/// The contract of the stages that compute which primitive a ray hits, and where: camera, cast, surface. Begin with
+/// stages.h.
 #ifndef GLINT_CONTRACT_HITS_H
 #define GLINT_CONTRACT_HITS_H
 
@@ -114,22 +114,6 @@ typedef struct glint_cast_args {
 // In these two cases the ray hits B if a corner of B is above A on the ray's side, a corner of A is above B on the
 // other side, and the ray is at B within rounding. So of two faces that share an edge, the ray hits the other face
 // exactly if it goes between them.
-
-// ---- scan: the nearest triangle of each ray, from a list of the triangles that a tile may show ----
-
-typedef struct glint_raster_entry {
-    uint32_t prim; ///< a triangle
-    uint8_t x0, y0, x1, y1; ///< the pixels of the tile in which it may be visible, inclusive
-    float depth; ///< lower bound of t * scale over all hits
-} glint_raster_entry;
-
-typedef struct glint_raster_args {
-    glint_cast_args cast; ///< as for cast_bundle or, with an orthographic camera, as for cast_rays; `camera` is set
-        ///< in both cases
-    const glint_raster_entry *entries; ///< in any order; the scan is fastest if nearer triangles come first
-    uint32_t entry_count;
-} glint_raster_args;
-// Like cast, with the triangles of the entries instead of all primitives.
 
 // ---- surface: point, normal and material of each hit ----
 

@@ -1,5 +1,5 @@
-// Computes how fast reflected light changes: evaluates the formulas of stages/ref/light.h, shade.h and microfacets.h
-// on numbers with slopes. Contract: contract/derivative.h.
+// Computes how fast reflected light changes: evaluates the formulas of stages/ref/light.h, stages/ref/shade.h and
+// effects/microfacet/ref.h on numbers with slopes. Contract: contract/derivative.h.
 #ifndef GLINT_DERIVATIVE_LIGHT_H
 #define GLINT_DERIVATIVE_LIGHT_H
 
@@ -190,7 +190,7 @@ INNER void lobe_lanes(const glint_derivative_material *material, vs alpha, const
     }
     const vs h2 = s_dot(h, h), sine2 = s_min(s_div(s_dot(across, across), h2), one);
     const vs l = s_min(s->cosine, one);
-    const vs v = s_max(s_min(s_dot(normal, eye), one), zero); // a bumped normal may face away; see ref/microfacets.h
+    const vs v = s_max(s_min(s_dot(normal, eye), one), zero); // a bumped normal may face away; see effects/microfacet/ref.h
     const vs lobe = facet_lanes(material, alpha, sine2, l, v);
     const vs z = s_min(s_mul(s_add(one, s_dot(s->direction, eye)), s_set(0.5)), one);
     const vs m = s_sub(one, s_sqrt(s_max(z, zero))), mm = s_mul(m, m);

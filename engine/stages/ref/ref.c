@@ -207,7 +207,10 @@ static double square_root_double(double x) { return sqrt(x); }
 #define ROUNDER GLINT_ROUNDER_FLOAT
 #define NAME(x) x##_float
 #include "engine/stages/ref/real.h"
-#include "engine/stages/ref/microfacets.h"
+#include "engine/effects/bounce/ref.h"
+#include "engine/effects/microfacet/ref.h"
+#include "engine/effects/raster/ref.h"
+#include "engine/effects/vertex_shading/ref.h"
 #include "engine/stages/ref/scatter.h"
 #include "engine/stages/ref/spread.h"
 #include "engine/stages/ref/soft.h"
@@ -219,7 +222,10 @@ static double square_root_double(double x) { return sqrt(x); }
 #define ROUNDER GLINT_ROUNDER_DOUBLE
 #define NAME(x) x##_double
 #include "engine/stages/ref/real.h"
-#include "engine/stages/ref/microfacets.h"
+#include "engine/effects/bounce/ref.h"
+#include "engine/effects/microfacet/ref.h"
+#include "engine/effects/raster/ref.h"
+#include "engine/effects/vertex_shading/ref.h"
 #include "engine/stages/ref/scatter.h"
 #include "engine/stages/ref/spread.h"
 #include "engine/stages/ref/soft.h"
@@ -228,7 +234,7 @@ static double square_root_double(double x) { return sqrt(x); }
 #undef NAME
 
 #include "engine/stages/ref/shade.h"
-#include "engine/stages/ref/sky.h"
+#include "engine/effects/indirect/ref_sky.h"
 
 // ---- resolve -----------------------------------------------------------------------------------------------------
 
@@ -264,7 +270,7 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
 #include "engine/stages/ref/program.h"
 #include "engine/stages/ref/bend.h"
 #include "engine/stages/ref/derivative.h"
-#include "engine/stages/ref/differ.h"
+#include "engine/effects/adaptive/ref.h"
 
 // ---- tone --------------------------------------------------------------------------------------------------------
 

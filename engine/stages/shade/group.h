@@ -3,7 +3,7 @@
 #ifndef GLINT_SHADE_GROUP_H
 #define GLINT_SHADE_GROUP_H
 
-#include "engine/stages/shade/microfacet_lobes.h"
+#include "engine/effects/microfacet/kernel_lobes.h"
 #include "engine/stages/shade/phong.h"
 #include "engine/stages/simd/elementary.h"
 

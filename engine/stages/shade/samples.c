@@ -1,12 +1,8 @@
 // The colours of samples, and the sums over samples.
 #include "engine/stages/film/resolve.h"
 #include "engine/stages/shade/shade.h"
-#include "engine/stages/shade/sky.h"
 
 KERNEL(shade, glint_shade_args)
-#if GLINT_WITH_INDIRECT
-KERNEL(sky, glint_sky_args)
-#endif
 #if GLINT_WITH_SAMPLES
 KERNEL(resolve, glint_resolve_args)
 

@@ -1,7 +1,4 @@
-// bounce: the directions of reflected rays and of refracted rays, by Snell's law. Contract: stages.h.
-#ifndef GLINT_SHADE_BOUNCE_H
-#define GLINT_SHADE_BOUNCE_H
-
+// bounce: the directions of reflected rays and of refracted rays, by Snell's law. Contract: contract.h.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
@@ -47,4 +44,6 @@ static void R(bounce)(const glint_bounce_args *args)
     }
 }
 
+#if GLINT_WITH_BOUNCE
+KERNEL(bounce, glint_bounce_args)
 #endif

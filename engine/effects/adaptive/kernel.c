@@ -1,7 +1,4 @@
-// estimate, range and differ: find the neighbouring pixels that differ. Contract: stages.h.
-#ifndef GLINT_FILM_DIFFER_H
-#define GLINT_FILM_DIFFER_H
-
+// estimate, range and differ: find the neighbouring pixels that differ. Contract: contract.h.
 #include "engine/stages/shade/group.h"
 #include "engine/stages/simd/elementary.h"
 
@@ -91,4 +88,16 @@ static void differ(const glint_differ_args *args, glint_differences *out)
         differ_lines(args, args->along, args->q != NULL, out);
 }
 
+#if GLINT_WITH_SAMPLES
+KERNEL(estimate, glint_estimate_args)
+
+void GLINT_ENTRY(range)(const glint_range_args *args, float out[2])
+{
+    range(args, out);
+}
+
+void GLINT_ENTRY(differ)(const glint_differ_args *args, glint_differences *out)
+{
+    differ(args, out);
+}
 #endif

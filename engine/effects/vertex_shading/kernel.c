@@ -1,8 +1,5 @@
 // vertex: interpolates light that was computed at the corners of a triangle, or once for its face, at each sample.
-// Contract: stages.h.
-#ifndef GLINT_SURFACE_VERTEX_H
-#define GLINT_SURFACE_VERTEX_H
-
+// Contract: contract.h.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/simd/real.h"
@@ -65,4 +62,6 @@ static void R(vertex)(const glint_vertex_args *args)
     }
 }
 
+#if GLINT_WITH_VERTEX
+KERNEL(vertex, glint_vertex_args)
 #endif

@@ -1,8 +1,5 @@
 // view and facet: the inputs of materials with microfacets: the angle at which a point is seen, the angle between
-// each light's half vector and the normal, and the Fresnel reflection at the half vector. Contract: stages.h.
-#ifndef GLINT_SHADE_MICROFACETS_H
-#define GLINT_SHADE_MICROFACETS_H
-
+// each light's half vector and the normal, and the Fresnel reflection at the half vector. Contract: contract.h.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/light/cone.h"
@@ -109,4 +106,7 @@ static void R(facet)(const glint_facet_args *args)
     }
 }
 
+#if GLINT_WITH_FACET
+KERNEL(view, glint_view_args)
+KERNEL(facet, glint_facet_args)
 #endif

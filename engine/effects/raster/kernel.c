@@ -1,8 +1,5 @@
-// scan: the nearest triangle of each ray of a tile, from a list of the triangles that the tile may show. Three edge
-// functions, linear over the picture, reject pixels; the remaining pixels are decided as in cast. Contract: stages.h.
-#ifndef GLINT_CAST_RASTER_H
-#define GLINT_CAST_RASTER_H
-
+// raster: the nearest triangle of each ray of a tile, from a list of the triangles that the tile may show. Three edge
+// functions, linear over the picture, reject pixels; the remaining pixels are decided as in cast. Contract: contract.h.
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/cast/shared_edge.h"
@@ -205,4 +202,6 @@ static void R(raster)(const glint_raster_args *args)
         R(finish_group)(cast, g);
 }
 
+#if GLINT_WITH_RASTER
+KERNEL(raster, glint_raster_args)
 #endif

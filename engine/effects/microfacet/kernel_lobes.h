@@ -1,5 +1,5 @@
-// microfacet_lobes: pi D G / (4 n.v) of GGX and Beckmann, and normalised powers, from the results of the stage facet.
-// Contract: stages.h.
+// Lobes: pi D G / (4 n.v) of GGX and Beckmann, and normalised powers, from the results of the stage facet.
+// Contract: contract.h.
 #ifndef GLINT_SHADE_MICROFACET_LOBES_H
 #define GLINT_SHADE_MICROFACET_LOBES_H
 

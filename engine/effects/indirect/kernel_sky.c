@@ -1,7 +1,4 @@
-// sky: the background seen by rays that miss. Contract: stages.h.
-#ifndef GLINT_SHADE_SKY_H
-#define GLINT_SHADE_SKY_H
-
+// sky: the background seen by rays that miss. Contract: contract.h.
 #include "engine/stages/shade/group.h"
 #include "engine/stages/simd/elementary.h"
 
@@ -19,4 +16,6 @@ static void sky(const glint_sky_args *args)
     }
 }
 
+#if GLINT_WITH_INDIRECT
+KERNEL(sky, glint_sky_args)
 #endif
