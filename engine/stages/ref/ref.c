@@ -268,8 +268,8 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
 }
 
 #include "engine/stages/ref/program.h"
-#include "engine/stages/ref/bend.h"
-#include "engine/stages/ref/derivative.h"
+#include "engine/effects/derivative/ref_bend.h"
+#include "engine/effects/derivative/ref.h"
 #include "engine/effects/adaptive/ref.h"
 
 // ---- tone --------------------------------------------------------------------------------------------------------

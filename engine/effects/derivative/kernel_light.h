@@ -1,9 +1,9 @@
 // Computes how fast reflected light changes: evaluates the formulas of stages/ref/light.h, stages/ref/shade.h and
-// effects/microfacet/ref.h on numbers with slopes. Contract: contract/derivative.h.
-#ifndef GLINT_DERIVATIVE_LIGHT_H
-#define GLINT_DERIVATIVE_LIGHT_H
+// effects/microfacet/ref.h on numbers with slopes. Contract: contract.h.
+#ifndef GLINT_DERIVATIVE_KERNEL_LIGHT_H
+#define GLINT_DERIVATIVE_KERNEL_LIGHT_H
 
-#include "engine/stages/derivative/sloped.h"
+#include "engine/effects/derivative/kernel_sloped.h"
 #include "engine/stages/program/call.h"
 #include "engine/stages/program/elementary.h"
 #include "engine/stages/program/exact.h"

@@ -1,6 +1,6 @@
 // Kernels that compute how fast hits, light and colours change.
-#include "engine/stages/derivative/bend.h"
-#include "engine/stages/derivative/light.h"
+#include "engine/effects/derivative/kernel_bend.h"
+#include "engine/effects/derivative/kernel_light.h"
 
 #if GLINT_WITH_DERIVATIVE
 KERNEL(eyes, glint_eyes_args)

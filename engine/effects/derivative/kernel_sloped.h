@@ -1,7 +1,7 @@
 // The vector vocabulary of derivatives: numbers with their slopes. Where `level` is a constant, the compiler
 // removes the code for slopes that are 0. s_keep makes `level` a constant where branches join.
-#ifndef GLINT_DERIVATIVE_SLOPED_H
-#define GLINT_DERIVATIVE_SLOPED_H
+#ifndef GLINT_DERIVATIVE_KERNEL_SLOPED_H
+#define GLINT_DERIVATIVE_KERNEL_SLOPED_H
 
 #include "engine/stages/program/elementary.h"
 #include "engine/stages/program/exact.h"

@@ -1,9 +1,9 @@
-// Computes how fast visible hits on one sphere or plane move. Contract: contract/derivative.h. For single hits on any
+// Computes how fast visible hits on one sphere or plane move. Contract: contract.h. For single hits on any
 // kind of primitive, see bend.c of effects/derivative.
-#ifndef GLINT_DERIVATIVE_BEND_H
-#define GLINT_DERIVATIVE_BEND_H
+#ifndef GLINT_DERIVATIVE_KERNEL_BEND_H
+#define GLINT_DERIVATIVE_KERNEL_BEND_H
 
-#include "engine/stages/derivative/sloped.h"
+#include "engine/effects/derivative/kernel_sloped.h"
 #include "engine/stages/program/exact.h"
 #include "engine/stages/simd/elementary.h"
 
