@@ -172,8 +172,8 @@ ifeq ($(KERNELS),native)
 endif
 # The stages and the kernels of effects are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
 STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/% $(wildcard engine/effects/*/kernel*.c),$(ENGINE_SRC)))
-STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% engine/stages/program/% %/shade/samples.c \
-                  %/adaptive/kernel.c %/derivative/kernel.c %/kernel_sky.c,$(STAGE_SRC))
+STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% %/shade/samples.c \
+                  %/adaptive/kernel.c %/derivative/kernel.c %/pattern/kernel.c %/kernel_sky.c,$(STAGE_SRC))
 STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
 # FLOAT= leaves out float, for a build in less time: the reference then renders --precision float, with the same bits.
 FLOAT        ?= yes

@@ -1,6 +1,6 @@
 /// The contract of every stage: what it reads and writes. This file has the rules for all stages. contract/tables.h,
 /// contract/hits.h, contract/light.h and contract/film.h describe the individual stages in the order in which they
-/// run, and contract/program.h the stages of programs. The contract of an effect's kernels is in the effect's folder.
+/// run. The contract of an effect's kernels is in the effect's folder.
 ///
 /// A stage takes plain arrays in and gives plain arrays out. It knows nothing about scenes. Each stage is written
 /// once in the vector vocabulary (simd/) and compiled for every instruction set, and once more, independently, as the
@@ -23,12 +23,12 @@
 #include "engine/effects/derivative/contract.h"
 #include "engine/effects/indirect/contract.h"
 #include "engine/effects/microfacet/contract.h"
+#include "engine/effects/pattern/contract.h"
 #include "engine/effects/raster/contract.h"
 #include "engine/effects/vertex_shading/contract.h"
 #include "engine/stages/contract/film.h"
 #include "engine/stages/contract/hits.h"
 #include "engine/stages/contract/light.h"
-#include "engine/stages/contract/program.h"
 #include "engine/stages/contract/tables.h"
 
 /// The kernels: ROW(WITH, RESULT, NAME, PARAMETERS) for each one. If WITH is false, the build has no such kernel. The

@@ -4,9 +4,9 @@
 #define GLINT_DERIVATIVE_KERNEL_LIGHT_H
 
 #include "engine/effects/derivative/kernel_sloped.h"
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/elementary.h"
-#include "engine/stages/program/exact.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_elementary.h"
+#include "engine/effects/pattern/kernel_exact.h"
 #include "engine/stages/simd/elementary.h"
 
 // Sets of inputs that have slopes. Each kernel is compiled for some combinations of these sets.

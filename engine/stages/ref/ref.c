@@ -1,7 +1,7 @@
 /// The scalar reference: every stage of stages.h for one sample at a time, in the order of operations of stages.h,
 /// sharing nothing with the vector bodies. A difference from a vector body is a mistake in one of the two.
 #include "engine/base/sequence.h"
-#include "engine/stages/program/coefficients.h"
+#include "engine/effects/pattern/kernel_coefficients.h"
 #include "engine/stages/simd/coefficients.h"
 #include "engine/stages/light/cone_sample.h"
 #include "engine/stages/stages.h"
@@ -267,7 +267,7 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
     }
 }
 
-#include "engine/stages/ref/program.h"
+#include "engine/effects/pattern/ref.h"
 #include "engine/effects/derivative/ref_bend.h"
 #include "engine/effects/derivative/ref.h"
 #include "engine/effects/adaptive/ref.h"

@@ -2,8 +2,8 @@
 ///
 /// The polynomials are Taylor series where noted, otherwise Chebyshev interpolations in exact arithmetic, rounded to
 /// double. The relative error of each polynomial on its interval is below 1e-16.
-#ifndef GLINT_PROGRAM_COEFFICIENTS_H
-#define GLINT_PROGRAM_COEFFICIENTS_H
+#ifndef GLINT_PATTERN_KERNEL_COEFFICIENTS_H
+#define GLINT_PATTERN_KERNEL_COEFFICIENTS_H
 
 #include "engine/stages/simd/coefficients.h"
 

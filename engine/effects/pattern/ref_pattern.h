@@ -1,4 +1,4 @@
-// The reference of noise, cells, hash, parity and texels, a lane at a time. Included by ref/program.h.
+// The reference of noise, cells, hash, parity and texels, a lane at a time. Included by ref.h.
 
 // ---- the hash ----------------------------------------------------------------------------------------------------
 

@@ -1,6 +1,6 @@
 // Patterns and shaders.
-#include "engine/stages/program/program.h"
-#include "engine/stages/program/unit.h"
+#include "engine/effects/pattern/kernel_program.h"
+#include "engine/effects/pattern/kernel_unit.h"
 
 #if GLINT_WITH_PROGRAM
 KERNEL(program, glint_program_args)

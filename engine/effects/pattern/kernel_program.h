@@ -1,13 +1,13 @@
-// The stage `program`: one call for each instruction, over all lanes. Contract: contract/program.h.
-#ifndef GLINT_PROGRAM_PROGRAM_H
-#define GLINT_PROGRAM_PROGRAM_H
+// The stage `program`: one call for each instruction, over all lanes. Contract: contract.h.
+#ifndef GLINT_PATTERN_KERNEL_PROGRAM_H
+#define GLINT_PATTERN_KERNEL_PROGRAM_H
 
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/cell.h"
-#include "engine/stages/program/elementary.h"
-#include "engine/stages/program/exact.h"
-#include "engine/stages/program/noise.h"
-#include "engine/stages/program/texel.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_cell.h"
+#include "engine/effects/pattern/kernel_elementary.h"
+#include "engine/effects/pattern/kernel_exact.h"
+#include "engine/effects/pattern/kernel_noise.h"
+#include "engine/effects/pattern/kernel_texel.h"
 #include "engine/stages/simd/elementary.h"
 
 static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {

@@ -4,13 +4,13 @@
 //   log2: 4e-16 of the result, or 4e-16 if the result is smaller than 1
 //   pow: 1e-12 of the result
 //   atan2, acos: 6e-16
-// Contract: contract/program.h.
-#ifndef GLINT_PROGRAM_ELEMENTARY_H
-#define GLINT_PROGRAM_ELEMENTARY_H
+// Contract: contract.h.
+#ifndef GLINT_PATTERN_KERNEL_ELEMENTARY_H
+#define GLINT_PATTERN_KERNEL_ELEMENTARY_H
 
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/coefficients.h"
-#include "engine/stages/program/exact.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_coefficients.h"
+#include "engine/effects/pattern/kernel_exact.h"
 #include "engine/stages/simd/elementary.h"
 
 static double scalar_sine(double x, double quarter) { return quarter != 0 ? glint_cos(x) : glint_sin(x); }

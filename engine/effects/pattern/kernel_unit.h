@@ -1,9 +1,9 @@
-// The stage `unit`: directions to lights and to the eye, as shaders read them. Contract: contract/program.h.
-#ifndef GLINT_PROGRAM_UNIT_H
-#define GLINT_PROGRAM_UNIT_H
+// The stage `unit`: directions to lights and to the eye, as shaders read them. Contract: contract.h.
+#ifndef GLINT_PATTERN_KERNEL_UNIT_H
+#define GLINT_PATTERN_KERNEL_UNIT_H
 
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/exact.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_exact.h"
 #include "engine/stages/simd/elementary.h"
 
 /// Computes d / by, where `by` is the length of d.

@@ -1,7 +1,7 @@
 // Common code of the kernels of operations. Each kernel reads and writes whole rows, one vector after the other. For
 // each vector, the kernel reads all operands before it writes a result, so that a result may overwrite an operand.
-#ifndef GLINT_PROGRAM_CALL_H
-#define GLINT_PROGRAM_CALL_H
+#ifndef GLINT_PATTERN_KERNEL_CALL_H
+#define GLINT_PATTERN_KERNEL_CALL_H
 
 #include "engine/stages/simd/elementary.h"
 

@@ -1,11 +1,11 @@
-// The hash, parity and noise. Contract: contract/program.h.
-#ifndef GLINT_PROGRAM_NOISE_H
-#define GLINT_PROGRAM_NOISE_H
+// The hash, parity and noise. Contract: contract.h.
+#ifndef GLINT_PATTERN_KERNEL_NOISE_H
+#define GLINT_PATTERN_KERNEL_NOISE_H
 
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/coefficients.h"
-#include "engine/stages/program/elementary.h"
-#include "engine/stages/program/exact.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_coefficients.h"
+#include "engine/effects/pattern/kernel_elementary.h"
+#include "engine/effects/pattern/kernel_exact.h"
 #include "engine/stages/simd/elementary.h"
 
 /// Combines the upper and the lower half of 64 bits; only the lower 32 bits of the result are used.

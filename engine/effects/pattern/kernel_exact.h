@@ -1,8 +1,8 @@
-// Operations that round once or twice, and selections. Contract: contract/program.h.
-#ifndef GLINT_PROGRAM_EXACT_H
-#define GLINT_PROGRAM_EXACT_H
+// Operations that round once or twice, and selections. Contract: contract.h.
+#ifndef GLINT_PATTERN_KERNEL_EXACT_H
+#define GLINT_PATTERN_KERNEL_EXACT_H
 
-#include "engine/stages/program/call.h"
+#include "engine/effects/pattern/kernel_call.h"
 #include "engine/stages/simd/elementary.h"
 
 static inline vd d_round(vd x)

@@ -132,6 +132,6 @@ typedef struct glint_choose_args {
     float *plane; ///< out
 } glint_choose_args;
 
-// glint.h describes each operation; ref/program.h and ref/pattern.h have the arithmetic and its order.
+// glint.h describes each operation; ref.h and ref_pattern.h have the arithmetic and its order.
 
 #endif

@@ -1,11 +1,11 @@
 // Reads texels. Level and position are computed for all lanes at once, and the texels are read lane by lane.
-// Contract: contract/program.h.
-#ifndef GLINT_PROGRAM_TEXEL_H
-#define GLINT_PROGRAM_TEXEL_H
+// Contract: contract.h.
+#ifndef GLINT_PATTERN_KERNEL_TEXEL_H
+#define GLINT_PATTERN_KERNEL_TEXEL_H
 
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/elementary.h"
-#include "engine/stages/program/exact.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_elementary.h"
+#include "engine/effects/pattern/kernel_exact.h"
 #include "engine/stages/simd/elementary.h"
 
 /// One level of a texture: the four texels to read, and their weights.

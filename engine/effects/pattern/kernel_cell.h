@@ -1,13 +1,13 @@
 // Cells: each unit cube has one feature point. The two points nearest to a position are in the 125 cubes around it:
 // its own cube, the 26 cubes next to it, and the 98 beyond, most of which are too far away. Contract:
-// contract/program.h.
-#ifndef GLINT_PROGRAM_CELL_H
-#define GLINT_PROGRAM_CELL_H
+// contract.h.
+#ifndef GLINT_PATTERN_KERNEL_CELL_H
+#define GLINT_PATTERN_KERNEL_CELL_H
 
-#include "engine/stages/program/call.h"
-#include "engine/stages/program/coefficients.h"
-#include "engine/stages/program/exact.h"
-#include "engine/stages/program/noise.h"
+#include "engine/effects/pattern/kernel_call.h"
+#include "engine/effects/pattern/kernel_coefficients.h"
+#include "engine/effects/pattern/kernel_exact.h"
+#include "engine/effects/pattern/kernel_noise.h"
 #include "engine/stages/simd/elementary.h"
 
 #define CELL_SIDE 5
