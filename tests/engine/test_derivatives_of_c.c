@@ -1,29 +1,15 @@
 /// Derivatives through glint.h and through a script of the same scene are identical bit for bit: derivatives by
 /// parameters of a material, a light, shapes, a camera, the scene and a pattern, in mirrors and glass, under an area
 /// light, with several samples.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "engine/glint.h"
+#include "tests/engine/cases/builder_case.h"
 
 #define WIDTH 64
 #define HEIGHT 48
-
-static glint_error error;
-
-#define OK(call) \
-    do { \
-        if ((call) != GLINT_OK) \
-            fail_msg("%s: %s", #call, error.message); \
-    } while (0)
 
 static const char script[] =
     "local glint = require 'glint'\n"
@@ -57,21 +43,12 @@ typedef struct made {
 static glint_program *make_stripes(void)
 {
     const double one = 1;
-    glint_builder *b;
-    glint_program *out;
-    glint_value x, wave, quarter, half, value;
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error));
-    OK(glint_builder_parameter(b, 3, &one, 1, &wave, &error));
-    OK(glint_builder_input(b, GLINT_INPUT_P_X, &x, &error));
-    OK(glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { wave, x }, &value, &error));
-    OK(glint_builder_op(b, GLINT_OP_SIN, &value, &value, &error));
-    OK(glint_builder_number(b, 0.25, &quarter, &error));
-    OK(glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { quarter, value }, &value, &error));
-    OK(glint_builder_number(b, 0.5, &half, &error));
-    OK(glint_builder_op(b, GLINT_OP_ADD, (const glint_value[]) { half, value }, &value, &error));
-    OK(glint_builder_finish(b, &value, 1, &out, &error));
-    glint_builder_destroy(b);
-    return out;
+    glint_value wave;
+    begin_program(GLINT_PROGRAM_PATTERN);
+    OK(glint_builder_parameter(builder, 3, &one, 1, &wave, &error));
+    const glint_value sine = op(GLINT_OP_SIN, op(GLINT_OP_MUL, wave, in(GLINT_INPUT_P_X), 0), 0, 0);
+    const glint_value value = op(GLINT_OP_ADD, num(0.5), op(GLINT_OP_MUL, num(0.25), sine, 0), 0);
+    return end_program(&value, 1);
 }
 
 static void grey(double out[3], double value)

@@ -1,54 +1,26 @@
 /// Backgrounds computed by a program, through glint.h only: counts, stages that run again, refused values; and
 /// patterns that are constants, inside and outside a field's range.
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <string.h>
 
-#include "engine/glint.h"
+#include "tests/engine/cases/builder_case.h"
 
 #define WIDTH 96
 #define HEIGHT 72
 
-static glint_error error;
-
-#define OK(call) \
-    do { \
-        if ((call) != GLINT_OK) \
-            fail_msg("%s: %s", #call, error.message); \
-    } while (0)
-
 /// Returns the program offset + slope d.y.
 static glint_program *gradient(double offset, double slope)
 {
-    glint_builder *b;
-    glint_program *out;
-    glint_value y, numbers[2], value;
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error));
-    OK(glint_builder_input(b, GLINT_INPUT_P_Y, &y, &error));
-    OK(glint_builder_number(b, slope, &numbers[0], &error));
-    OK(glint_builder_number(b, offset, &numbers[1], &error));
-    OK(glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { y, numbers[0] }, &value, &error));
-    OK(glint_builder_op(b, GLINT_OP_ADD, (const glint_value[]) { value, numbers[1] }, &value, &error));
-    OK(glint_builder_finish(b, &value, 1, &out, &error));
-    glint_builder_destroy(b);
-    return out;
+    begin_program(GLINT_PROGRAM_PATTERN);
+    const glint_value rise = op(GLINT_OP_MUL, in(GLINT_INPUT_P_Y), num(slope), 0);
+    const glint_value value = op(GLINT_OP_ADD, rise, num(offset), 0);
+    return end_program(&value, 1);
 }
 
 static glint_program *constant(glint_program_kind kind, double number)
 {
-    glint_builder *b;
-    glint_program *out;
-    glint_value value;
-    OK(glint_builder_create(kind, &b, &error));
-    OK(glint_builder_number(b, number, &value, &error));
-    OK(glint_builder_finish(b, (const glint_value[]) { value, value, value }, kind == GLINT_PROGRAM_SHADER ? 3 : 1,
-                            &out, &error));
-    glint_builder_destroy(b);
-    return out;
+    begin_program(kind);
+    const glint_value value = num(number);
+    return end_program((const glint_value[]) { value, value, value }, kind == GLINT_PROGRAM_SHADER ? 3 : 1);
 }
 
 // ---- A ball in front of the background ------------------------------------------------------------------------------

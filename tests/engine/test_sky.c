@@ -1,28 +1,15 @@
 /// The table that a background is sampled by: its density integrates to 1, drawn directions follow it, and the mean of
 /// brightness / density is the sky's integral. Also skies that have no table.
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <stdlib.h>
 
 #include "engine/base/sequence.h"
 #include "engine/effects/environment/sky.h"
 #include "engine/plan/plan.h"
 #include "engine/program/program.h"
+#include "tests/engine/cases/builder_case.h"
 
 #define PI 3.14159265358979323846
-
-static glint_error error;
-
-#define OK(call) \
-    do { \
-        if ((call) != GLINT_OK) \
-            fail_msg("%s: %s", #call, error.message); \
-    } while (0)
 
 // ---- Skies ----
 
@@ -33,32 +20,20 @@ static double dot(const double a[3], const double b[3]) { return (a[0] * b[0] + 
 /// Returns the program max(d . SPOT - cosine, 0) + rest.
 static glint_program *spot(double cosine, double rest)
 {
-    glint_builder *b;
-    glint_program *out;
-    glint_value d[3], value, number;
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error));
-    OK(glint_builder_number(b, -cosine, &value, &error));
+    begin_program(GLINT_PROGRAM_PATTERN);
+    glint_value value = num(-cosine);
     for (int c = 0; c < 3; c++) {
-        OK(glint_builder_input(b, (glint_input)(GLINT_INPUT_P_X + c), &d[c], &error));
-        OK(glint_builder_number(b, SPOT[c], &number, &error));
-        OK(glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { d[c], number }, &d[c], &error));
-        OK(glint_builder_op(b, GLINT_OP_ADD, (const glint_value[]) { d[c], value }, &value, &error));
+        const glint_value part = op(GLINT_OP_MUL, in((glint_input)(GLINT_INPUT_P_X + c)), num(SPOT[c]), 0);
+        value = op(GLINT_OP_ADD, part, value, 0);
     }
-    OK(glint_builder_number(b, 0, &number, &error));
-    OK(glint_builder_op(b, GLINT_OP_MAX, (const glint_value[]) { value, number }, &value, &error));
-    OK(glint_builder_number(b, rest, &number, &error));
-    OK(glint_builder_op(b, GLINT_OP_ADD, (const glint_value[]) { value, number }, &value, &error));
-    OK(glint_builder_finish(b, &value, 1, &out, &error));
-    glint_builder_destroy(b);
-    return out;
+    value = op(GLINT_OP_ADD, op(GLINT_OP_MAX, value, num(0), 0), num(rest), 0);
+    return end_program(&value, 1);
 }
 
 /// Returns the program of a black picture with one texel of brightness 1 in all three channels.
 static glint_program *texel(int width, int height, int x, int y, glint_filter filter)
 {
-    glint_builder *b;
-    glint_program *out;
-    glint_value u, v, footprint, color[4];
+    glint_value color[4];
     glint_texture *texture;
     uint8_t *rgb = calloc((size_t)width * (size_t)height, 3);
     assert_non_null(rgb);
@@ -66,13 +41,9 @@ static glint_program *texel(int width, int height, int x, int y, glint_filter fi
         rgb[3 * (y * width + x) + c] = 255;
     const glint_texture_desc desc = { .rgb = rgb, .width = width, .height = height, .wrap = GLINT_WRAP_AROUND, .filter = filter };
     OK(glint_texture_create(&desc, &texture, &error));
-    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error));
-    OK(glint_builder_input(b, GLINT_INPUT_UV_U, &u, &error));
-    OK(glint_builder_input(b, GLINT_INPUT_UV_V, &v, &error));
-    OK(glint_builder_number(b, 0, &footprint, &error));
-    OK(glint_builder_texel(b, texture, u, v, footprint, color, &error));
-    OK(glint_builder_finish(b, color, 3, &out, &error));
-    glint_builder_destroy(b);
+    begin_program(GLINT_PROGRAM_PATTERN);
+    OK(glint_builder_texel(builder, texture, in(GLINT_INPUT_UV_U), in(GLINT_INPUT_UV_V), num(0), color, &error));
+    glint_program *out = end_program(color, 3);
     glint_texture_release(texture);
     free(rgb);
     return out;
