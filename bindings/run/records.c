@@ -35,6 +35,7 @@ void glintL_run_destroy(glintL_run *run)
         return;
     glint_writer_destroy(run->writer); // before the records, which hold its results
     glint_renderer_destroy(run->renderer);
+    glint_renderer_destroy(run->other_renderer);
     glint_plan_destroy(run->explain_plan);
     free(run->explain_order);
     glint_plan_destroy(run->retained_neighbour);
@@ -139,7 +140,8 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     desc.threads = run->request.threads;
     desc.time_stages = run->times_stages;
     desc.count_work = run->counts_work;
-    desc.no_reuse = run->request.no_reuse || run->request.repeat > 1; // repeats measure whole frames
+    // repeats measure whole frames
+    desc.no_reuse = run->request.no_reuse || run->request.repeat > 1 || run->most_samples > 0;
     desc.reuse_memory = run->request.reuse_memory;
     if (run->request.is_untrusted && !desc.reuse_memory)
         desc.reuse_memory = UNTRUSTED_REUSE_MEMORY;

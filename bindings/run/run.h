@@ -276,7 +276,7 @@ struct glintL_run {
     bool keeps_images; ///< every picture includes its linear beauty pass
     int preview_side; ///< > 0: limit of the longer side of pictures, which have one sample per pixel
     bool was_shrunk; ///< preview_side made the picture smaller
-    double most_samples; ///< > 0: limit of the samples of a pixel
+    double most_samples; ///< see glintL_run_limit; 0: no limit
     bool renders_partner; ///< pictures are the partners of those that are wanted, for glint_estimate_error
     bool is_dialect; ///< the script is in a dialect, where the functions that warnings name have other names
     bool is_command; ///< run by the command: its options override the script's; files are written in the background
@@ -295,6 +295,7 @@ struct glintL_run {
     glintL_reporter reporter;
 
     glint_renderer *renderer;
+    glint_renderer *other_renderer; ///< the one that glintL_run_limit exchanges for `renderer`; NULL: none yet
     int renderer_threads; ///< number of threads, as requested
     glint_writer *writer;
     glintL_record *head, *tail; ///< in the order of frames
@@ -464,6 +465,15 @@ void glintL_render_be_partner(glintL_render *render);
 /// Renders a frame with 2, 4, 8 ... samples until its error or the time is as requested. The caller owns the last
 /// work, which is rendered. NULL: the run has failed.
 glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner, int64_t index);
+
+// ---- steps.c ----
+
+/// Returns the samples of the picture to show after the one with `samples`; 0: none is shown yet. `own_samples` are those
+/// of the full picture. `full_ms` is the time that the full picture takes; 0: unknown.
+double glintL_next_samples(double samples, double own_samples, double full_ms);
+/// Begins pictures with at most `samples` samples of a pixel, or their partners. They have their own renderer, which
+/// reuses nothing, so that the run's renderer keeps the data of full pictures. 0: ends them.
+void glintL_run_limit(glintL_run *run, double samples, bool is_partner);
 
 // ---- brightness.c ----
 

@@ -15,14 +15,13 @@
 #include "bindings/watch/watch.h"
 
 #define PREVIEW_SIDE 640
-#define STEPS_LEAST_MS 100 // a picture that takes less time is shown without steps
 #define STEPS_BETWEEN_LOOKS 10000 // instructions of the script between two checks
 
 static const char watch_track_lua[] = {
 #include "bindings/watch/track.lua.h"
 };
 
-typedef enum quality { PREVIEW, STEP, FULL, QUALITIES } quality;
+typedef enum quality { PREVIEW, FULL, QUALITIES } quality;
 
 typedef struct watcher {
     cli_options *options;
@@ -45,7 +44,7 @@ typedef struct watcher {
     int64_t calls; // number of calls of scene:render in the script; the frames of its jobs have higher numbers
     int width, height;
     double ms;
-    bool is_preview, no_reuse; // no_reuse: from the command line
+    bool is_preview;
     double samples, own_samples, error; // the picture's samples per pixel, the script's, and the estimate; < 0: unknown
     double render_ms, full_ms; // time to render the last picture, and the last full picture; 0: unknown
     glint_image *image; // the picture now shown; owned
@@ -68,9 +67,9 @@ static char *make_state(const watcher *w)
     glintL_json(out, "{\"script\":%s", w->run->script);
     fprintf(out,
             ",\"frame\":%" PRId64 ",\"frames\":%" PRId64 ",\"picture\":%" PRId64
-            ",\"width\":%d,\"height\":%d,\"preview\":%s,\"samples\":%.0f,\"ms\":%.3f,\"params\":%s",
-            w->frame, w->frames, w->pictures, w->width, w->height, w->is_preview ? "true" : "false", w->samples, w->ms,
-            w->params ? w->params : "[]");
+            ",\"width\":%d,\"height\":%d,\"preview\":%s,\"samples\":%.0f,\"own_samples\":%.0f,\"ms\":%.3f,\"params\":%s",
+            w->frame, w->frames, w->pictures, w->width, w->height, w->is_preview ? "true" : "false", w->samples,
+            w->own_samples, w->ms, w->params ? w->params : "[]");
     if (w->error >= 0)
         fprintf(out, ",\"estimate\":%.3g", w->error);
     if (*w->failure)
@@ -126,8 +125,9 @@ static void draw(watcher *w)
         return;
     if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
         snprintf(of, sizeof of, " of %" PRId64, w->frames);
-    if (w->samples > 1)
-        snprintf(samples, sizeof samples, w->error >= 0 ? ", %.0f samples, error %.2g" : ", %.0f samples", w->samples, w->error);
+    if (w->own_samples > 1)
+        snprintf(samples, sizeof samples, w->error >= 0 ? ", %.0f of %.0f samples, estimated error %.2g" : ", %.0f of %.0f samples",
+                 w->samples, w->own_samples, w->error);
     snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s%s, %.0f ms after the %s%s%s", w->run->script,
              w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", samples, w->ms,
              w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
@@ -175,7 +175,7 @@ static void show(void *context, const glintL_run *run, const glintL_work *work)
         return;
     }
     keep_picture(w, picture, glint_image_retain(work->image));
-    w->is_preview = w->now == STEP || (w->now == PREVIEW && w->run->was_shrunk);
+    w->is_preview = run->most_samples > 0 || (w->now == PREVIEW && run->was_shrunk);
     w->frame = work->index;
     w->frames = w->frames > work->index ? w->frames : work->index;
     w->width = glint_image_width(work->image);
@@ -338,7 +338,6 @@ static void begin_run(watcher *w, quality now)
     glintL_run_reset(run);
     run->mode = GLINTL_MODE_WATCH;
     run->preview_side = now == PREVIEW ? PREVIEW_SIDE : 0;
-    run->request.no_reuse = w->no_reuse || now == STEP;
     w->shown = false;
     if (now == PREVIEW)
         w->warnings[0] = '\0';
@@ -409,11 +408,9 @@ static bool is_superseded(watcher *w) { return watch_requests_waiting(&w->reques
 // Renders the frame of jobs with at most `samples`, or its partner. False: an error, or a newer request.
 static bool render_step(watcher *w, double samples, bool is_partner)
 {
-    w->run->most_samples = samples;
-    w->run->renders_partner = is_partner;
-    const bool good = !is_superseded(w) && render(w, STEP, false);
-    w->run->most_samples = 0;
-    w->run->renders_partner = false;
+    glintL_run_limit(w->run, samples, is_partner);
+    const bool good = !is_superseded(w) && render(w, FULL, false);
+    glintL_run_limit(w->run, 0, false);
     return good;
 }
 
@@ -421,15 +418,11 @@ static bool render_step(watcher *w, double samples, bool is_partner)
 // request.
 static bool show_steps(watcher *w)
 {
-    if (w->full_ms > 0 && w->full_ms < STEPS_LEAST_MS)
-        return true;
-    for (double samples = 1; samples < w->own_samples; samples *= 2) {
-        if (!render_step(w, samples, false))
+    double samples = glintL_next_samples(0, w->own_samples, w->full_ms);
+    while (samples < w->own_samples) {
+        if (!render_step(w, samples, false) || (samples > 1 && !render_step(w, samples, true)))
             return false;
-        if (samples == 1 && w->render_ms * w->own_samples < STEPS_LEAST_MS)
-            return true;
-        if (samples > 1 && !render_step(w, samples, true))
-            return false;
+        samples = glintL_next_samples(samples, w->own_samples, w->render_ms / samples * w->own_samples);
     }
     return true;
 }
@@ -439,7 +432,8 @@ static bool show_steps(watcher *w)
 static bool show_full(watcher *w)
 {
     const bool is_job = w->script.has_jobs && w->calls == 0;
-    if ((is_job && w->own_samples > 1 && !show_steps(w)) || is_superseded(w) || !render(w, FULL, false))
+    take_renderer(w, FULL);
+    if ((is_job && !show_steps(w)) || is_superseded(w) || !render(w, FULL, false))
         return false;
     w->full_ms = w->render_ms;
     return !is_job || w->samples < 2 || render_step(w, w->samples, true);
@@ -483,7 +477,6 @@ static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
     run->request.force = true;
     run->request.render_text[glintL_render_find("output")] = "none";
     run->keeps_images = true;
-    w->no_reuse = run->request.no_reuse;
     run->reporter = (glintL_reporter) {
         .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare, .reads = note_mesh
     };

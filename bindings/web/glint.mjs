@@ -35,7 +35,9 @@ class Image {
   #planes
   constructor(result) {
     const { planes, ...rest } = result
-    Object.assign(this, rest) // frame, width, height, rgba, warnings, printed, memory: bytes used by the engine
+    // frame, width, height, rgba, warnings, printed, memory: bytes used by the engine; samples and ownSamples of a pixel:
+    // the picture's and the full picture's
+    Object.assign(this, rest)
     this.#planes = planes
   }
   /** The float32 numbers of a requested pass, row by row from the top, as in a .pfm. */
@@ -67,6 +69,8 @@ class Host {
   #isOpen = false // the worker has run the script
   #isReopening = false
   #isClosed = false
+  #since // when the worker got the message that it is processing
+  #openingMs = 0 // time that a new worker needs
   constructor(engine, opening) {
     this.#engine = engine
     this.#opening = opening
@@ -110,6 +114,7 @@ class Host {
     this.#worker.ref?.()
     const first = this.#isOpen || asked.message.call === "open" ? asked.message : this.#opening
     this.#isReopening = first !== asked.message
+    this.#since = performance.now()
     this.#watch()
     this.#worker.postMessage({ ...first, ...(first.call === "open" ? { module: this.#engine.module } : {}) })
   }
@@ -123,6 +128,7 @@ class Host {
     if (data.rendering === true) return
     if (data.rendering === false) return this.#watch()
     if (data.failed !== undefined) return this.#fail(new GlintError(data.failed), this.#isOpen && !data.broken)
+    if (!this.#isOpen) this.#openingMs = performance.now() - this.#since
     this.#isOpen = true
     if (!this.#isReopening) this.#settle(this.#queue.shift(), "resolve", data.result)
     this.#begin()
@@ -142,13 +148,19 @@ class Host {
     this.#worker = undefined
   }
 
+  // Rejects a request. A worker that is processing it may complete it, for as long as a new worker would take to open the
+  // script.
   #abort(asked) {
-    const place = this.#queue.indexOf(asked)
-    if (place < 0) return
-    this.#queue.splice(place, 1)
-    if (place === 0) this.#stop()
     this.#settle(asked, "reject", aborted(asked.signal))
-    if (place === 0) this.#begin()
+    const place = this.#queue.indexOf(asked)
+    if (place > 0) this.#queue.splice(place, 1)
+    if (place === 0) setTimeout(() => this.#drop(asked), Math.max(0, this.#openingMs - (performance.now() - this.#since)))
+  }
+  #drop(asked) {
+    if (this.#queue[0] !== asked) return
+    this.#queue.shift()
+    this.#stop()
+    this.#begin()
   }
 }
 
@@ -166,13 +178,30 @@ class Job {
    * image.plane() returns; they take extra time. `view` is the pass that image.rgba shows, as in its .png. The other
    * options are the fields of scene:render{}.
    */
-  async render({ frame = 1, passes = [], view = "beauty", set, signal, ...options } = {}) {
+  async render(options) { return new Image(await this.#ask("render", options)) }
+
+  /**
+   * Renders a frame in steps: yields pictures with 1, 2, 4 ... samples, and the picture of render() as the last. Yields a
+   * picture again when `image.error`, the estimated error of its beauty pass, is known. Frames of one sample, pictures
+   * that take less than a tenth of a second, and calls of scene:render have no steps before the last.
+   */
+  async *steps(options) {
+    let image
+    do {
+      image = new Image(await this.#ask("render", options, { after: image?.samples ?? 0 }))
+      yield image
+      const error = image.samples > 1 ? await this.#ask("estimate", options) : undefined
+      if (error !== undefined) yield Object.assign(image, { error })
+    } while (image.samples < image.ownSamples)
+  }
+
+  #ask(call, { frame = 1, passes = [], view = "beauty", set, signal, ...options } = {}, more) {
     const named = [passes].flat().flatMap(list => String(list).split(",")).filter(name => name !== "")
     const needed = view === "beauty" || named.includes(view) ? named : [...named, view]
-    const message = { call: "render", frame, view, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options) }
+    const message = { call, frame, view, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options), ...more }
     if (needed.length) message.options.passes = needed.join(",")
     message.options.bits = "8" // a page shows no more
-    return new Image(await this.#host.ask(message, signal))
+    return this.#host.ask(message, signal)
   }
   /** Returns the output of `glint explain --json` for a frame. */
   explain({ frame = 1, set, signal, ...options } = {}) {

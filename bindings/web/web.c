@@ -1,7 +1,7 @@
 // The module for browsers and Node: one job in the memory of WebAssembly. worker.mjs calls the functions here.
 //
 // The job's files are in a file system in memory. The script runs once for each set of parameters. Its frames are
-// rendered as by glint watch, with one renderer, so that unchanged parts are reused.
+// rendered as by glint watch, with a renderer that reuses unchanged parts and one for steps.
 #include <emscripten.h>
 #include <inttypes.h>
 #include <lualib.h>
@@ -33,6 +33,8 @@ typedef struct web_job {
     char *params, *plan; // JSON; owned
     glint_image *image; // picture of the last frame
     glintL_render render;
+    double sample_ms; // time that a sample of the last picture took; 0: unknown
+    double error; // estimate for the last picture; < 0: unknown
     uint8_t *bytes; // result of the last request; owned
     char warnings[WARNINGS_SIZE]; // warnings of the last call, one per line
 } web_job;
@@ -150,12 +152,22 @@ static void around_render(void *context, const glintL_run *run, bool begins)
     tell_rendering(begins);
 }
 
+// Returns the number of samples of a picture.
+static double samples_of(const glint_render_desc *desc) { return desc->width * desc->height * desc->samples; }
+
 static void take_image(void *context, const glintL_run *run, const glintL_work *work)
 {
-    (void)context, (void)run;
+    glint_error error;
+    (void)context;
+    if (run->renders_partner) {
+        if (glint_estimate_error(job.image, work->image, &job.error, &error))
+            glintL_run_fail(job.run, GLINTL_EXIT_FAILED, work->index, "%s", error.message);
+        return;
+    }
     glint_image_release(job.image);
     job.image = glint_image_retain(work->image);
     job.render = work->render;
+    job.sample_ms = work->stats.render_ms / samples_of(&job.render.desc);
 }
 
 static void warn(void *context, const char *message)
@@ -197,16 +209,29 @@ static bool run_script(int64_t frame)
     return cli_run_script(&job.script, &job.options, job.run);
 }
 
-// Stores the size of the list's first frame, and the frame rate.
-static void measure_job(lua_State *L)
+// Returns the job of a frame, which the script's list of jobs has, and its options.
+static const glintL_job *job_of(int64_t frame, glintL_render *render)
 {
+    lua_State *L = job.script.state;
+    const glintL_job *found = NULL;
     lua_rawgeti(L, LUA_REGISTRYINDEX, job.script.jobs);
-    lua_rawgeti(L, -1, 1);
-    const glintL_job *first = lua_touserdata(L, -1);
-    glintL_render render = first->render;
-    job.fps = first->fps;
-    lua_pop(L, 2);
-    glintL_run_apply(job.run, &render);
+    for (lua_Integer i = 1; frame > 0; i++) {
+        lua_rawgeti(L, -1, i);
+        found = lua_touserdata(L, -1);
+        frame -= found->frames;
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    *render = found->render;
+    glintL_run_apply(job.run, render);
+    return found;
+}
+
+// Stores the size of the list's first frame, and the frame rate.
+static void measure_job(void)
+{
+    glintL_render render;
+    job.fps = job_of(1, &render)->fps;
     job.width = render.desc.width;
     job.height = render.desc.height;
 }
@@ -327,7 +352,7 @@ EMSCRIPTEN_KEEPALIVE bool web_run(void)
     if (!keep_params())
         return false;
     if (job.calls == 0)
-        measure_job(job.script.state);
+        measure_job();
     return job.calls == 0 || measure_call();
 }
 
@@ -356,9 +381,30 @@ static bool render(int64_t frame)
     return !job.script.has_jobs || cli_run_jobs(&job.script, run);
 }
 
+/// Returns the samples of a pixel of a frame that may be shown in steps. 0: it may not, because it is a call of
+/// scene:render, and the whole script would run for each step.
+EMSCRIPTEN_KEEPALIVE double web_own_samples(double frame)
+{
+    glintL_render render;
+    if (job.calls > 0 || !job.script.state || !(frame >= 1 && frame <= (double)job.frames))
+        return 0;
+    job_of((int64_t)frame, &render);
+    return render.desc.samples;
+}
+
+/// Returns the limit of samples of the step after a picture with `samples`; 0: none is shown yet. The full picture has no
+/// limit: 0.
+EMSCRIPTEN_KEEPALIVE double web_next_samples(double frame, double samples)
+{
+    glintL_render render;
+    job_of((int64_t)frame, &render);
+    const double next = glintL_next_samples(samples, render.desc.samples, job.sample_ms * samples_of(&render.desc));
+    return next < render.desc.samples ? next : 0;
+}
+
 /// Renders a frame. keeps: the image stores its float32 numbers; otherwise only pixel values, which are cached tile by
-/// tile.
-EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
+/// tile. samples: the most samples of a pixel; 0: no limit.
+EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps, double samples)
 {
     job.run->keeps_images = keeps;
     job.warnings[0] = '\0';
@@ -369,12 +415,26 @@ EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps)
         return glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0,
                                "frame: expected a frame of the script, 1 .. %" PRId64 ", got '%g'", job.frames, frame);
     }
+    glintL_run_limit(job.run, samples, false);
     const bool good = render((int64_t)frame);
+    glintL_run_limit(job.run, 0, false);
     if (!glintL_run_collect(job.run, true) || !good)
         return false;
     return job.image || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "frame %g was not rendered", frame);
 }
 
+/// Returns the estimated error of the last picture, which has float32 numbers and is of this frame; < 0: it failed.
+EMSCRIPTEN_KEEPALIVE double web_estimate(double frame)
+{
+    job.error = -1;
+    job.run->keeps_images = true;
+    glintL_run_limit(job.run, job.render.desc.samples, true);
+    const bool good = render((int64_t)frame);
+    glintL_run_limit(job.run, 0, false);
+    return glintL_run_collect(job.run, true) && good ? job.error : -1;
+}
+
+EMSCRIPTEN_KEEPALIVE double web_samples(void) { return job.render.desc.samples; }
 EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }
 EMSCRIPTEN_KEEPALIVE int web_image_height(void) { return glint_image_height(job.image); }
 

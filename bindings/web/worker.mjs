@@ -9,6 +9,7 @@ const MESSAGE_LINES = 1000 // lines that a script may print in one call
 const port = globalThis.process?.versions?.node ? (await import("node:worker_threads")).parentPort : globalThis
 let engine, sets, printed = []
 const chosen = new Set() // options overridden by the page
+let shown // what the engine's last picture shows, if its error can be estimated
 
 function print(line) {
   if (printed.length < MESSAGE_LINES) printed.push(line)
@@ -108,15 +109,33 @@ function namePasses(passes) {
   return passes.flatMap(name => name === "light:*" ? lights : [name])
 }
 
-function render({ set, frame, options, passes, view }) {
+const keyOf = ({ set, frame, options }) => JSON.stringify([set, frame, options, call("web_samples")])
+
+// Renders a frame; as the step after a picture with `after` samples if that is given.
+function render(message) {
+  const { set, frame, options, passes, view, after } = message
   run(set)
   choose(options)
-  check(call("web_render", frame, "passes" in options))
+  const own = after === undefined ? 0 : call("web_own_samples", frame), isStep = own > 1
+  check(call("web_render", frame, isStep || "passes" in options, isStep ? call("web_next_samples", frame, after) : 0))
+  shown = isStep && view === "beauty" ? keyOf(message) : undefined
   const width = call("web_image_width"), height = call("web_image_height")
   const at = check(call("web_rgba", view))
   const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)
   const planes = Object.fromEntries(namePasses(passes).map(name => [name, plane(name)]))
-  return { frame, width, height, rgba, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }
+  const samples = call("web_samples")
+  return { frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }
+}
+
+// Returns the estimated error of a step. undefined: the frame has no steps, or the engine has rendered another picture
+// since.
+function estimate(message) {
+  if (keyOf(message) !== shown) return undefined
+  run(message.set) // an explain may have run it with others
+  choose(message.options)
+  const error = call("web_estimate", message.frame)
+  check(error >= 0)
+  return error
 }
 
 function explain({ set, frame, options }) {
@@ -126,13 +145,13 @@ function explain({ set, frame, options }) {
   return engine.UTF8ToString(at)
 }
 
-const calls = { open, render, explain }
+const calls = { open, render, estimate, explain }
 
 async function answer(message) {
   printed = []
   try {
     const result = await calls[message.call](message)
-    const moved = result.rgba ? [result.rgba.buffer, ...Object.values(result.planes).map(numbers => numbers.buffer)] : []
+    const moved = result?.rgba ? [result.rgba.buffer, ...Object.values(result.planes).map(numbers => numbers.buffer)] : []
     port.postMessage({ result }, moved)
   } catch (error) {
     // After a failure of the engine itself its memory must not be used again.

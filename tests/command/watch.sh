@@ -324,7 +324,7 @@ port=${host#*:}
 ask GET "${path}picture" "" | LC_ALL=C sed '1,/^\r$/d' >last.png
 "$glint" slow.lua -f 1 --size $size --quiet -o 'slow_%d.png'
 check "the last one is the picture" "$glint" compare last.png slow_1.png --fail 0 --warn 0
-check "the line has samples and error" grep -q '^slow.lua, frame 1 of 2: [0-9]* x [0-9]*, 16 samples, error 0\.[0-9]*, ' err6
+check "the line has samples and error" grep -q '^slow.lua, frame 1 of 2: [0-9]* x [0-9]*, 16 of 16 samples, estimated error 0\.[0-9]*, ' err6
 exec 6<>"/dev/tcp/127.0.0.1/$port"
 printf 'GET %sevents HTTP/1.1\r\nHost: %s\r\n\r\n' "$path" "$host" >&6
 timeout 30 cat <&6 >stream6 &

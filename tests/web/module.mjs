@@ -182,6 +182,59 @@ await test("files and modules that the script was given, and warnings", async ()
   job.close()
 })
 
+// ---- Steps ----
+
+const soft = fs.readFileSync("tests/web/soft.lua", "utf8")
+async function stepsOf(job, options) {
+  const found = []
+  for await (const image of job.steps(options)) if (image !== found.at(-1)) found.push(image)
+  return found
+}
+
+await test("steps are pictures of --samples n, with the errors of --until", async () => {
+  const job = await glint.open(soft), found = await stepsOf(job)
+  assert.deepEqual(found.map(image => image.samples), [1, 2, 4, 6])
+  for (const { samples, ownSamples, rgba, error } of found) {
+    native("tests/web/soft.lua", ["--samples", String(samples)], `${OUT}/soft.png`)
+    assert(sameBits(rgba, decode(fs.readFileSync(`${OUT}/soft.png`)).rgba), `the codes of ${samples} samples`)
+    assert.equal(ownSamples, 6)
+    if (samples === 1) assert.equal(error, undefined)
+    else assert.equal(error, errorOf(samples))
+  }
+  const full = await job.render()
+  assert(sameBits(full.rgba, found.at(-1).rgba), "the last one is the picture of render")
+  assert.deepEqual((await stepsOf(job, { width: 16, height: 9 })).map(image => image.samples), [6], "a quick picture has no steps")
+  job.close()
+})
+
+// The error that --until estimates for a picture of soft.lua.
+function errorOf(samples) {
+  const lines = execFileSync(GLINT, ["tests/web/soft.lua", "--samples", String(samples), "--until", "1e-9", "-o", "none", "--json"],
+    { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })
+  return Number(/"error":([0-9.e-]+)/.exec(lines)[1])
+}
+
+await test("no steps for one sample, nor for a call of scene:render", async () => {
+  for (const source of [soft.replace("samples = 6, f", "samples = 1, f"), soft.replace("return glint.animation {", "local film = {") +
+    "film.scene:render { width = 320, height = 180, samples = 6 }"]) {
+    const job = await glint.open(source), answers = []
+    for await (const image of job.steps()) answers.push([image.samples === image.ownSamples, image.error])
+    assert.deepEqual(answers, [[true, undefined]])
+    job.close()
+  }
+})
+
+await test("steps end when the loop is left, and when they are cancelled", async () => {
+  const job = await glint.open(soft), stop = new AbortController()
+  for await (const image of job.steps({ samples: 4096 })) if (image.samples === 2) break
+  const start = performance.now(), step = job.steps({ width: 6000, height: 4000, signal: stop.signal }).next() // takes minutes
+  setTimeout(() => stop.abort(), 100)
+  await assert.rejects(step, { name: "AbortError" })
+  assert.equal((await job.render({ width: 32, height: 18 })).samples, 6)
+  assert(performance.now() - start < 20000)
+  job.close()
+})
+
 await test("500 renders need no more memory than the first", async () => {
   const job = await glint.open(ball)
   let memory = 0

@@ -107,8 +107,10 @@ const canvasOf = page => page.locator("#picture")
 async function playground() {
   const start = Date.now()
   const page = await open(`${base}/index.html`)
-  await ready(page)
+  await page.waitForFunction(() => document.getElementById("time").textContent !== "")
   console.log(`playground: first picture after ${Date.now() - start} ms`)
+  await ready(page)
+  console.log(`playground: full picture after ${Date.now() - start} ms`)
   await shows(page, canvasOf(page), native("moving_light.lua", "--size", "640x360", "-f", "1"), "playground: the first picture")
 
   const slider = page.getByLabel("radius")
@@ -277,6 +279,77 @@ async function live() {
   }
 }
 
+// Opens a published page of tests/web/soft.lua with other samples. The figure's `found` gets its pictures since the last
+// move of the slider; without those that only add an error, but `errors` gets the notes of these.
+async function openSoft(samples) {
+  const name = `soft_${samples}`
+  writeFileSync(join(work, `${name}.lua`), readFileSync(join(scripts, "../tests/web/soft.lua"), "utf8").replace("samples = 6, f", `samples = ${samples}, f`))
+  run("publish", `${name}.lua`, "-o", `${name}.html`)
+  const page = await open(`file://${join(work, `${name}.html`)}`), one = page.locator("glint-figure")
+  await one.evaluate(figure => {
+    const clear = () => Object.assign(figure, { found: [], errors: [] })
+    clear()
+    figure.shadowRoot.addEventListener("input", clear, { capture: true })
+    figure.addEventListener("glint-render", ({ detail: { image, coarse } }) => {
+      const canvas = figure.shadowRoot.querySelector("canvas"), note = figure.shadowRoot.querySelector(".timing")
+      if (image.error !== undefined) return figure.errors.push(note.textContent)
+      figure.found.push({ samples: image.samples, isCoarse: coarse && image.ownSamples === 1,
+        note: note.style.visibility === "hidden" ? "" : note.textContent,
+        codes: [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data] })
+    })
+  })
+  await one.getByLabel("height").focus()
+  return { page, one, name: `${name}.lua` }
+}
+
+const foundIn = async one => (await one.evaluate(figure => figure.found)).filter(picture => !picture.isCoarse)
+
+async function steps() {
+  const { page, one, name } = await openSoft(6)
+  await page.keyboard.press("Home")
+  await page.waitForFunction(() => document.querySelector("glint-figure").errors.length === 3)
+  const found = await foundIn(one)
+  check(found.map(picture => picture.samples).join() === "1,2,4,6", `steps: ${found.map(picture => picture.samples)}`)
+  for (const { samples, codes, note } of found) {
+    check(same(codes, await codesExpected(page, name, "--set", "height=4", "--samples", String(samples))), `steps: the picture of ${samples} samples`)
+    check(note === `${samples} of 6 samples`, `steps: the note '${note}'`)
+  }
+  const errors = await one.evaluate(figure => figure.errors)
+  check(errors.every((note, i) => note.startsWith(`${found[i + 1].samples} of 6 samples, estimated error 0.0`)), `steps: ${errors}`)
+  for (const [width, height] of [[1200, 800], [390, 844]]) {
+    await page.setViewportSize({ width, height })
+    await page.screenshot({ path: join(work, `steps-${width}.png`) })
+  }
+  await close(page, "steps")
+  await oneSample()
+  await cancelled()
+}
+
+async function oneSample() {
+  const { page, one } = await openSoft(1)
+  await page.keyboard.press("Home")
+  await page.waitForFunction(() => document.querySelector("glint-figure").found.some(picture => !picture.isCoarse))
+  await page.waitForTimeout(300)
+  const found = await foundIn(one)
+  check(found.length === 1 && found[0].note === "", "one sample: no steps, no note")
+  await close(page, "one sample")
+}
+
+async function cancelled() {
+  const { page, one } = await openSoft(256)
+  const has = samples => page.waitForFunction(wanted => document.querySelector("glint-figure").found.some(picture => picture.samples === wanted), samples)
+  await page.keyboard.press("End")
+  await has(4)
+  const start = Date.now()
+  await page.keyboard.press("Home")
+  await page.waitForFunction(() => document.querySelector("glint-figure").found.length > 0)
+  console.log(`steps: the picture of a change after ${Date.now() - start} ms`)
+  await has(4)
+  const found = await foundIn(one)
+  check(found.slice(0, 3).map(picture => picture.samples).join() === "1,2,4", `a change ends the steps: ${found.map(picture => picture.samples)}`)
+  await close(page, "cancelled")
+}
+
 const TRICKY = `local glint = require "glint"
 local P = glint.params { height = { 8, min = 4, max = 12, doc = "</script><b>&" } }
 return glint.animation { width = 64, height = 36, scene = glint.scene {
@@ -308,7 +381,7 @@ function codesOf(page, path) {
   }, readFileSync(path).toString("base64"))
 }
 
-for (const test of [playground, sharing, figure, course, published, live, phone]) {
+for (const test of [playground, sharing, figure, course, published, live, steps, phone]) {
   if (!test.name.includes(process.env.T ?? "")) continue
   try {
     await test()

@@ -12,15 +12,16 @@
 //   width, height   size of the picture, in pixels; default: the script's own
 //   frame      first frame shown, from 1
 //   timing     shows how long the last full picture took
+// A full picture of several samples appears in steps, with 1, 2, 4 ... samples and their estimated errors.
 // A page may set `figure.given = { name, text, files, values }` instead of src and files.
 // The picture inside the element is shown until the first frame is rendered, and without JavaScript. `figure.values`
 // has the values of the controls. Each finished picture sends the event "glint-render" with the `detail` { image,
-// coarse, ms }. An error sends "glint-error" with { error }.
+// coarse, ms }, and again when image.error is known. coarse: a better picture follows. An error sends "glint-error" with
+// { error }.
 import { load } from "./glint.mjs"
 
 const REST_MS = 150         // after this time without changes the full picture is rendered
 const COARSE_MS = 30        // time limit for a picture while a control moves
-const PATIENCE_MS = 300     // a full picture that takes longer is cancelled by the next request; its worker starts anew
 const LOGARITHMIC = 100     // a slider is logarithmic if the ratio of its ends is larger
 
 let engine // one for all figures of a page
@@ -43,6 +44,9 @@ const style = `
   label { display: grid; grid-template-columns: 1fr auto; gap: 0 0.5rem; align-items: center; }
   label > input[type=range], label > select, label > input[type=text] { grid-column: 1 / -1; width: 100%; box-sizing: border-box;
     min-height: 1.75rem; margin: 0; font: inherit; }
+  .timing { flex: 1 1 20rem; font-size: 0.875rem; }
+  @media (max-width: 30rem) { .timing { min-height: 2lh; } }
+  .timing:empty { display: none; }
   .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
   .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; margin: 0.5rem 0; }
   .bar input { flex: 1 1 8rem; }
@@ -52,6 +56,11 @@ const style = `
 // Returns the number with three significant digits and no trailing zeros.
 export function written(value) {
   return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(3)))
+}
+
+// Returns the picture's samples and error as text; "" for a scene of one sample.
+export function quality({ samples, ownSamples, error }) {
+  return ownSamples > 1 ? `${samples} of ${ownSamples} samples${error === undefined ? "" : `, estimated error ${written(error)}`}` : ""
 }
 
 // Makes the control of one parameter: a labelled slider, list, box or field. It calls `changed(value, moving)` for each
@@ -142,7 +151,7 @@ export function show(canvas, image) {
 }
 
 // Renders a job's pictures as the controls request them: one at a time, the newest request first, coarse while a
-// control moves.
+// control moves, otherwise in steps. A request cancels the steps of the one before.
 export class Renderer {
   constructor(job, { size, shown, failed }) {
     Object.assign(this, { job, size, shown, failed })
@@ -156,8 +165,8 @@ export class Renderer {
     clearTimeout(this.rest)
     if (coarse) this.rest = setTimeout(() => this.ask(request), REST_MS)
     this.next = { request, coarse }
+    this.abort?.abort()
     if (!this.running) this.run()
-    else if (performance.now() - this.since > PATIENCE_MS) this.abort?.abort()
   }
 
   stop() {
@@ -182,16 +191,19 @@ export class Renderer {
     const small = { width: Math.max(16, Math.round(width * scale)), height: Math.max(9, Math.round(height * scale)) }
     const abort = coarse ? null : new AbortController()
     this.abort = abort
-    const start = this.since = performance.now()
     try {
-      const image = await this.job.render({ ...request, ...small, ...coarse && { samples: 1 }, ...abort && { signal: abort.signal } })
-      const ms = performance.now() - start
-      if (coarse) this.scale = Math.min(1, Math.max(0.125, scale * Math.sqrt(COARSE_MS / Math.max(ms, 1))))
-      this.shown(image, { coarse, ms })
+      const pictures = coarse ? [this.job.render({ ...request, ...small, samples: 1 })] : this.job.steps({ ...request, ...small, signal: abort.signal })
+      let since = performance.now(), ms
+      for await (const image of pictures) {
+        if (image.error === undefined) ms = performance.now() - since
+        if (coarse) this.scale = Math.min(1, Math.max(0.125, scale * Math.sqrt(COARSE_MS / Math.max(ms, 1))))
+        this.shown(image, { coarse: coarse || image.samples < image.ownSamples, ms })
+        since = performance.now()
+      }
     } catch (error) {
       if (error.name !== "AbortError") this.failed(error)
     }
-    if (this.abort === abort) this.abort = null
+    this.abort = null
   }
 }
 
@@ -225,6 +237,7 @@ class Player {
 
   // Called when a frame is shown.
   shown() {
+    clearTimeout(this.timer)
     if (this.playing) this.timer = setTimeout(() => this.playing && this.step(), Math.max(0, this.due - performance.now()))
   }
 }
@@ -366,9 +379,20 @@ export class GlintFigure extends HTMLElement {
     this.part$("slot").hidden = true
     this.part$("slot").style.display = "none"
     this.part$(".error").hidden = true
-    if (this.hasAttribute("timing") && !coarse) this.part$(".timing").textContent = `${Math.max(1, Math.round(ms))} ms`
+    this.showNote(image, coarse, ms)
     this.player?.shown()
     this.dispatchEvent(new CustomEvent("glint-render", { detail: { image, coarse, ms } }))
+  }
+
+  showNote(image, coarse, ms) {
+    const note = this.part$(".timing")
+    const parts = [quality(image)]
+    if (this.hasAttribute("timing") && !coarse) parts.push(`${Math.max(1, Math.round(ms))} ms`)
+    const text = parts.filter(Boolean).join(", ")
+    note.ariaBusy = String(coarse)
+    note.style.visibility = text ? "" : "hidden" // a coarse picture leaves the text's space free
+    if (text) note.textContent = text
+    if (text) this.part$(".foot").hidden = false
   }
 
   failed(error) {

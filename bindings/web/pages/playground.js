@@ -7,7 +7,7 @@ import { lua } from "@codemirror/legacy-modes/mode/lua"
 import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
 import { load } from "./glint.mjs"
-import { control, Renderer, show } from "./glint-figure.js"
+import { control, quality, Renderer, show } from "./glint-figure.js"
 
 const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
@@ -15,7 +15,7 @@ const engine = load()
 
 let examples = []
 let job, renderer, files = {}, name = "scene.lua"
-let values = {}, frame = 1, playing = false, picture
+let values = {}, frame = 1, playing = false, turning, picture
 
 // ---- The editor ----
 
@@ -105,13 +105,14 @@ function ask(coarse) {
 function shown(image, { coarse, ms }) {
   show(get("picture"), image)
   clearError()
-  get("state").textContent = coarse ? "coarse" : "ready"
+  get("state").textContent = image.samples < image.ownSamples ? "refining" : coarse ? "coarse" : "ready"
+  get("time").textContent = [`${image.width} × ${image.height}`, quality(image), `${Math.max(1, Math.round(ms))} ms`].filter(Boolean).join(", ")
   if (!coarse) {
     picture = image
-    get("time").textContent = `${image.width} × ${image.height}, ${Math.max(1, Math.round(ms))} ms`
     get("save-picture").disabled = false
   }
-  if (playing) setTimeout(() => playing && goTo(frame % job.frames + 1, true), Math.max(0, 1000 / job.fps - ms))
+  clearTimeout(turning)
+  if (playing) turning = setTimeout(() => playing && goTo(frame % job.frames + 1, true), Math.max(0, 1000 / job.fps - ms))
 }
 
 // ---- Controls ----
