@@ -7,8 +7,6 @@
 #include "engine/effects/pattern/pattern.h"
 #include "engine/tile/rays.h"
 
-#define GLINT_WEIGHT_MAX 1e150 ///< products with a surface's light are finite below it
-
 /// Returns a weight, limited to GLINT_WEIGHT_MAX.
 static inline double glint_weight(double x) { return x < GLINT_WEIGHT_MAX ? x : GLINT_WEIGHT_MAX; }
 

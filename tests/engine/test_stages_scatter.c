@@ -57,11 +57,14 @@ static void spread_case(int precision, bool odd)
     const uint32_t groups = 1 + below(6), n = groups * GLINT_GROUP;
     const array_kind kind = real_kind(precision);
     const void *normal[3], *ray[3], *disk[2];
-    const void *alpha = input(kind, n);
+    const void *alpha = input(kind, n), *share[6];
+    const bool weighs = !one_in(3);
     input3(normal, kind, n);
     input3(ray, kind, n);
     for (int k = 0; k < 2; k++)
         disk[k] = input(kind, n);
+    for (int k = 0; k < 6; k++)
+        share[k] = input(KIND_DOUBLE, n);
     for (uint32_t i = 0; i < n; i++) {
         double up[3], v[3];
         const double radius = sqrt(between(0, 1)), angle = between(0, 6.3);
@@ -76,24 +79,31 @@ static void spread_case(int precision, bool odd)
         put3(normal, precision, i, up);
         put3(ray, precision, i, v);
         put(alpha, precision, i, one_in(4) ? 1e-18 : power_of_ten(-8, 0));
+        for (int k = 0; k < 6; k++)
+            put(share[k], GLINT_DOUBLE, i, maybe_odd(odd, one_in(5) ? power_of_ten(148, 152) : between(0, 1)));
         put(disk[0], precision, i, radius * cos(angle));
         put(disk[1], precision, i, radius * sin(angle));
     }
     glint_spread_args args = { .group_count = groups, .wanted = masks(groups), .alpha = alpha, .disk = { disk[0], disk[1] } };
     memcpy(args.normal, normal, sizeof normal);
     memcpy(args.ray, ray, sizeof ray);
+    memcpy(args.head_on, share, sizeof args.head_on);
+    memcpy(args.added, share + 3, sizeof args.added);
     FOR_EACH_TESTED
     {
-        void *out[5];
-        for (int k = 0; k < 5; k++)
-            out[k] = output("spread", kind, n);
+        const int count = weighs ? 8 : 5;
+        void *out[8];
+        for (int k = 0; k < count; k++)
+            out[k] = output("spread", k < 3 ? kind : KIND_DOUBLE, n);
         memcpy(args.direction, out, sizeof args.direction);
-        args.cosine = out[3];
+        args.grazing = out[3];
         args.weight = out[4];
+        if (weighs)
+            memcpy(args.ray_weight, out + 5, sizeof args.ray_weight);
         geometry(precision)->spread(&args);
         for (uint32_t i = 0; i < n; i++) // the other lanes may hold anything
-            for (int k = 0; k < 5 && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
-                put(out[k], precision, i, 0);
+            for (int k = 0; k < count && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
+                put(out[k], k < 3 ? precision : GLINT_DOUBLE, i, 0);
         compare_outputs("spread");
     }
 }

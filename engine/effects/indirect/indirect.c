@@ -85,15 +85,20 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
 
 // ---- Continuing ----
 
+/// Returns whether a path at sample i has not reached the limit of reflections and refractions.
+static bool may_reflect(const glint_batch *batch, const glint_plan *plan, uint32_t i)
+{
+    return batch->rays->depth[batch->ray_of[i]] < plan->desc.max_depth;
+}
+
 /// Returns whether the surface of sample i may also mirror, refract or let through a path, and the path has not
 /// reached its end.
 static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i)
 {
-    const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
-    const uint32_t ray = batch->ray_of[i];
-    const bool plain = glint_is_plain(plan, batch->tile.surface.material[i]);
-    return ((m->mirrors || m->transmits) && !plain && batch->rays->depth[ray] < plan->desc.max_depth) ||
-           (m->clears && batch->rays->passes[ray] < GLINT_PASSES_MAX);
+    const uint32_t material = batch->tile.surface.material[i];
+    const glint_bounce_material *m = &plan->bouncing[material];
+    return ((m->mirrors || m->transmits) && may_reflect(batch, plan, i) && !glint_is_plain(plan, material)) ||
+           (m->clears && batch->rays->passes[batch->ray_of[i]] < GLINT_PASSES_MAX);
 }
 
 void glint_indirect_find_directions(struct glint_indirect *indirect, const glint_tile_frame *frame)
@@ -146,12 +151,6 @@ static bool is_rough(const glint_batch *batch, const glint_plan *plan, uint32_t 
     return plan->bouncing && plan->bouncing[batch->tile.surface.material[i]].rough;
 }
 
-/// Returns whether a rough surface reflects or refracts the path.
-static bool spreads_at(const glint_batch *batch, const glint_plan *plan, uint32_t i, event what)
-{
-    return (what == EVENT_MIRRORED || what == EVENT_REFRACTED) && is_rough(batch, plan, i);
-}
-
 /// Fills the shares of the mirrored and of the refracted ray of a rough surface, at the facet that path `number` draws.
 static void spread_shares(const struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
                           double share[2])
@@ -164,7 +163,7 @@ static void spread_shares(const struct glint_indirect *indirect, const glint_til
     if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
         const glint_bounce_material *m = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer);
         for (int c = 0; c < 3 && m->mirrors; c++)
-            share[0] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? fmax(m->f0[c], LEAST_SHARE) : 1));
+            share[0] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? glint_larger(m->f0[c], LEAST_SHARE) : 1));
         return;
     }
     glint_indirect_draw(indirect, batch->rays->point[ray], number, next_seed(batch->rays, ray), square);
@@ -175,9 +174,10 @@ static void spread_shares(const struct glint_indirect *indirect, const glint_til
     share[1] *= mean(weight);
 }
 
-/// Chooses the continuation of the path of sample i, and starts the ray unless it is scattered.
+/// Chooses the continuation of the path of sample i, and starts the ray unless it is scattered. rough: whether the
+/// surface is.
 static event choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
-                    glint_ray *next)
+                    bool rough, glint_ray *next)
 {
     glint_batch *batch = &indirect->batch;
     const glint_rays *rays = batch->rays;
@@ -189,15 +189,15 @@ static event choose(struct glint_indirect *indirect, const glint_tile_frame *fra
         for (int c = 0; c < 3; c++)
             share[0] += diffuse[c] * rays->weight[c][ray];
     if (glint_has_lane(batch->wanted, i)) {
-        const bool ends = !(rays->depth[ray] < frame->plan->desc.max_depth); // only scattered or straight rays are left
+        const bool ends = !may_reflect(batch, frame->plan, i); // only scattered or straight rays are left
         glint_batch_split(batch, &batch->tile, frame, i, split);
         share[1] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_MIRRORED].weight);
         share[2] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_REFRACTED].weight);
         share[3] = frame->plan->clears ? 3 * mean(split[GLINT_BRANCH_STRAIGHT].weight) : 0;
     }
-    if (is_rough(batch, frame->plan, i)) {
+    if (rough) {
         share[1] = share[2] = 0;
-        if (rays->depth[ray] < frame->plan->desc.max_depth)
+        if (may_reflect(batch, frame->plan, i))
             spread_shares(indirect, frame, number, i, share + 1);
     }
     const double all = ((share[0] + share[1]) + share[2]) + share[3];
@@ -206,7 +206,7 @@ static event choose(struct glint_indirect *indirect, const glint_tile_frame *fra
     const int chosen = choose_branch(indirect, number, rays, ray, share, all);
     const double chance = share[chosen] / all;
     const event what = (event)(EVENT_SCATTERED + chosen);
-    const bool spreads = spreads_at(batch, frame->plan, i, what);
+    const bool spreads = rough && (what == EVENT_MIRRORED || what == EVENT_REFRACTED);
     if (chosen && !spreads)
         *next = split[chosen - 1];
     else
@@ -227,7 +227,7 @@ static void spread_plain(struct glint_indirect *indirect, const glint_tile_frame
     const glint_tile *tile = &indirect->batch.tile;
     const glint_precision precision = frame->plan->desc.precision;
     glint_spread_args args = { .group_count = tile->group_count, .wanted = plain, .alpha = indirect->alpha,
-                               .cosine = indirect->cosine, .weight = indirect->unmasked,
+                               .grazing = indirect->grazing, .weight = indirect->unmasked,
                                .disk = { indirect->direction[0], indirect->direction[1] } };
     glint_bounce_material buffer;
     for (int c = 0; c < 3; c++) {
@@ -235,21 +235,17 @@ static void spread_plain(struct glint_indirect *indirect, const glint_tile_frame
         args.ray[c] = tile->rays.direction[c];
         args.direction[c] = indirect->direction[c];
     }
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
-        if (glint_has_lane(plain, i))
-            glint_real_put(indirect->alpha, precision, i, glint_tile_bouncing(tile, frame->plan, i, &buffer)->alpha);
     frame->stages->geometry[precision].spread(&args);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         if (!glint_has_lane(plain, i))
             continue;
         const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
-        const double cosine = glint_real_at(indirect->cosine, precision, i), part = glint_real_at(indirect->unmasked, precision, i);
         next->depth[i]++;
         next->blind[i / GLINT_GROUP] |= (uint16_t)((unsigned)m->facets << i % GLINT_GROUP);
         for (int c = 0; c < 3; c++) {
-            const double share = m->mirror[c] * m->specular[c] * glint_rough_reflectance(m, c, cosine, 1);
+            const double share = m->mirror[c] * m->specular[c] * glint_schlick(m, c, indirect->grazing[i]);
             glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
-            next->weight[c][i] = glint_weight(next->weight[c][i] * (share * part));
+            next->weight[c][i] = glint_weight(next->weight[c][i] * (share * indirect->unmasked[i]));
         }
     }
 }
@@ -304,12 +300,15 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
     glint_indirect_scatter(frame, batch->tile.group_count, up, indirect->spread, &indirect->next_draws, 0,
                            indirect->direction);
     uint16_t plain[GLINT_TILE_GROUPS] = { 0 };
+    glint_bounce_material buffer;
     for (uint32_t g = 0; g < batch->tile.group_count; g++)
         for (unsigned bits = indirect->spread[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double disk[2], square[2];
             glint_ray ray;
             if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
+                const double alpha = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer)->alpha;
+                glint_real_put(indirect->alpha, frame->plan->desc.precision, i, alpha);
                 plain[g] |= (uint16_t)(bits & -bits);
                 continue;
             }
@@ -323,6 +322,13 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
             glint_rays_put(next, frame->plan, i, &ray);
         }
     spread_plain(indirect, frame, plain, next);
+}
+
+/// Returns whether a path at sample i has reached the limits of all its continuations.
+static bool ends(const glint_batch *batch, const glint_plan *plan, uint32_t i, bool rough)
+{
+    return !(batch->rays->scatters[batch->ray_of[i]] < plan->indirect.bounces) && !glint_has_lane(batch->wanted, i) &&
+           !(rough && may_reflect(batch, plan, i));
 }
 
 /// Continues every path that has hit a surface. Returns whether there is any.
@@ -340,11 +346,14 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
         indirect->scattered[g] = indirect->spread[g] = 0;
         for (unsigned bits = tile->at.hits[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
+            const bool rough = is_rough(batch, frame->plan, i);
+            if (ends(batch, frame->plan, i, rough))
+                continue;
             glint_ray next;
-            const event chosen = choose(indirect, frame, number, i, &next);
+            const event chosen = choose(indirect, frame, number, i, rough, &next);
             if (chosen == EVENT_NONE)
                 continue;
-            const bool spreads = spreads_at(batch, frame->plan, i, chosen);
+            const bool spreads = rough && (chosen == EVENT_MIRRORED || chosen == EVENT_REFRACTED);
             if (chosen == EVENT_SCATTERED || spreads) {
                 draw_next(indirect, &next, number, i);
                 (spreads ? indirect->spread : indirect->scattered)[g] |= (uint16_t)(bits & -bits);

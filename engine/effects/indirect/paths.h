@@ -38,8 +38,9 @@ struct glint_indirect {
     uint8_t branch[GLINT_TILE_SAMPLES]; ///< which of the two, a glint_branch
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< directions of scattered paths
     _Alignas(64) double up[3][GLINT_TILE_SAMPLES]; ///< real: (0, 0, 1), for points of the unit disk
-    // arguments and results of the stage spread, for the rays that plain rough surfaces reflect
-    _Alignas(64) double alpha[GLINT_TILE_SAMPLES], cosine[GLINT_TILE_SAMPLES], unmasked[GLINT_TILE_SAMPLES]; ///< real
+    // an argument and the results of the stage spread, for the rays that plain rough surfaces reflect
+    _Alignas(64) double alpha[GLINT_TILE_SAMPLES]; ///< real
+    _Alignas(64) double grazing[GLINT_TILE_SAMPLES], unmasked[GLINT_TILE_SAMPLES];
     glint_term term; ///< the term of all first rays; GLINT_TERM_COUNT: they have several
     uint64_t salt; ///< distinguishes the sequences of indirect light, 0, from those of rough surfaces
 };

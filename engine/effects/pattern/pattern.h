@@ -125,8 +125,13 @@ static inline const double *glint_tile_diffuse(const glint_tile *tile, const gli
 }
 
 /// Returns mirror, transmission and absorption of a tile's sample; `buffer` holds them if programs compute any.
-const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                                                 glint_bounce_material *buffer);
+const glint_bounce_material *glint_tile_pattern_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                                         glint_bounce_material *buffer);
+static inline const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                                               glint_bounce_material *buffer)
+{
+    return plan->patterns ? glint_tile_pattern_bouncing(tile, plan, i, buffer) : &plan->bouncing[tile->surface.material[i]];
+}
 /// Returns the part of a sample's ambient light that indirect light replaces, in channel c: for materials whose
 /// diffuse reflectance a program computes, and for all others.
 double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c);

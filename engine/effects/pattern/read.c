@@ -6,15 +6,15 @@
 
 #include <math.h>
 
-const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
-                                                 glint_bounce_material *buffer)
+const glint_bounce_material *glint_tile_pattern_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                                         glint_bounce_material *buffer)
 {
     const uint32_t material = tile->surface.material[i];
     const glint_bounce_material *m = &plan->bouncing[material];
     const uint32_t read = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION | 1u << GLINT_FIELD_CLEAR |
                           1u << GLINT_FIELD_ROUGHNESS | 1u << GLINT_FIELD_SPECULAR;
     double color[3];
-    const uint32_t made = plan->patterns ? plan->patterns->of[material].made & read : 0;
+    const uint32_t made = plan->patterns->of[material].made & read;
     if (!made)
         return m;
     *buffer = *m;

@@ -20,7 +20,7 @@
 
 #define PI 0x1.921fb54442d18p+1
 #define BECKMANN_FAR 700 ///< x above which Beckmann's distribution has no facets in double
-#define LEAST_CHANCE 0.1 ///< of reflection and of refraction where the facet is not known, because it is steeper
+#define LEAST_CHANCE 0.01 ///< of reflection and of refraction
 
 // ---- The surface ----
 
@@ -48,7 +48,8 @@ static void find_tangents(double axis[3][3])
     vec_copy(axis[1], other);
 }
 
-void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3])
+/// Finds the normal of sample i on the ray's side, with its bump, and the unit vector against the ray.
+static void find_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3])
 {
     for (int c = 0; c < 3; c++)
         to_eye[c] = -glint_tile_direction(tile, plan->desc.precision, c, i);
@@ -62,7 +63,7 @@ static view look(const glint_tile *tile, const glint_plan *plan, uint32_t i, con
 {
     view v = { .alpha = m->alpha, .beckmann = m->beckmann };
     double to_eye[3];
-    glint_rough_view(tile, plan, i, v.axis[2], to_eye);
+    find_view(tile, plan, i, v.axis[2], to_eye);
     find_tangents(v.axis);
     for (int k = 0; k < 3; k++)
         v.to_eye[k] = vec_dot(v.axis[k], to_eye);
@@ -128,12 +129,14 @@ static double dielectric(double c, double s, double ratio)
     return ratio == 1 ? 0 : s < 0 ? 1 : 0.5 * (p * p + q * q);
 }
 
-double glint_rough_reflectance(const glint_bounce_material *m, int c, double cosine, double ratio)
+/// Returns the reflected share in channel c at a facet, without the material's factors. cosine: of the arriving ray and
+/// the facet. ratio: see glint_batch_ratio; only read with `fresnel`.
+static double reflectance(const glint_bounce_material *m, int c, double cosine, double ratio)
 {
     if (m->fresnel)
         return dielectric(cosine, refracted_cosine(cosine, ratio), ratio);
     const double r = 1 - cosine;
-    return m->schlick ? m->f0[c] + (1 - m->f0[c]) * ((r * r) * (r * r) * r) : 1;
+    return glint_schlick(m, c, (r * r) * (r * r) * r);
 }
 
 // ---- Under a bright sky ----
@@ -184,18 +187,17 @@ static double balance(const view *v, const glint_sky *sky, double x, const doubl
 // ---- Rays ----
 
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        const double *disk, double share[2])
+                        const double disk[2], double share[2])
 {
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const view v = look(tile, frame->plan, i, m);
-    const double ratio = glint_batch_ratio(batch, tile, frame, i), least = disk ? LEAST_CHANCE / 10 : LEAST_CHANCE;
-    double facet[3] = { 0, 0, 1 };
-    if (disk)
-        draw_facet(&v, disk, facet);
+    const double ratio = glint_batch_ratio(batch, tile, frame, i), least = LEAST_CHANCE;
+    double facet[3];
+    draw_facet(&v, disk, facet);
     share[0] = share[1] = 0;
     for (int c = 0; c < 3; c++) {
-        const double r = fmax(glint_rough_reflectance(m, c, fmin(vec_dot(v.to_eye, facet), 1), ratio), least);
+        const double r = fmax(reflectance(m, c, fmin(vec_dot(v.to_eye, facet), 1), ratio), least);
         share[GLINT_BRANCH_MIRRORED] += m->mirrors ? m->mirror[c] * m->specular[c] * r : 0;
         if (m->transmits)
             share[GLINT_BRANCH_REFRACTED] += fmax(m->transmission[c], least) * (m->fresnel ? fmax(1 - r, least) : 1);
@@ -208,7 +210,7 @@ static void weigh(const glint_bounce_material *m, glint_branch branch, double co
 {
     const bool total = refracted_cosine(cosine, ratio) < 0;
     for (int c = 0; c < 3; c++) {
-        const double r = glint_rough_reflectance(m, c, cosine, ratio), mirror = m->mirror[c] * m->specular[c];
+        const double r = reflectance(m, c, cosine, ratio), mirror = m->mirror[c] * m->specular[c];
         const double beyond = (total ? fmax(1 - m->clear - mirror, 0) : m->transmission[c]) * (m->fresnel ? 1 - r : 1);
         weight[c] = glint_weight(weight[c] * ((branch == GLINT_BRANCH_MIRRORED ? mirror * r : beyond) * factor));
     }

@@ -18,7 +18,7 @@ struct glint_rough {
     bool mirrors[GLINT_TILE_SAMPLES], transmits[GLINT_TILE_SAMPLES]; ///< whether paths of each point are reflected, refracted
     // points that only reflect, from GGX's facets: the stage spread draws for all of them at once
     uint16_t plain[GLINT_TILE_GROUPS];
-    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES], ray[3][GLINT_TILE_SAMPLES], alpha[GLINT_TILE_SAMPLES]; ///< real
+    _Alignas(64) double ray[3][GLINT_TILE_SAMPLES], alpha[GLINT_TILE_SAMPLES]; ///< real
     double weight[3][GLINT_TILE_SAMPLES], grazing[3][GLINT_TILE_SAMPLES]; ///< of a ray reflected straight back, and what
         ///< Schlick's reflectance adds at grazing angles
     glint_plan plan; ///< the frame's plan, with the numbers of samples and bounces of these paths
@@ -52,21 +52,21 @@ static bool spreads(const glint_tile *seen, const glint_plan *plan, const glint_
 }
 
 /// Fills the arguments of spread for point i, and the parts of its rays that are equal for all paths.
-static void note_plain(struct glint_rough *rough, const glint_tile *seen, uint32_t i, uint32_t paths, glint_ray *ray)
+static void note_plain(struct glint_rough *rough, const glint_tile *seen, const glint_bounce_material *m, uint32_t i,
+                       uint32_t paths, glint_ray *ray)
 {
-    const glint_plan *plan = &rough->plan;
-    glint_bounce_material buffer;
-    const glint_bounce_material *m = glint_tile_bouncing(seen, plan, i, &buffer);
-    double normal[3], eye[3];
-    glint_rough_view(seen, plan, i, normal, eye);
+    const glint_precision precision = rough->plan.desc.precision;
+    double direction[3];
+    for (int c = 0; c < 3; c++)
+        direction[c] = glint_tile_direction(seen, precision, c, i);
+    vec_normalize(direction, direction);
     for (int c = 0; c < 3; c++) {
-        glint_real_put(rough->normal[c], plan->desc.precision, i, normal[c]);
-        glint_real_put(rough->ray[c], plan->desc.precision, i, -eye[c]);
+        glint_real_put(rough->ray[c], precision, i, direction[c]);
         const double most = ray->weight[c] / paths * (m->mirror[c] * m->specular[c]), f0 = m->schlick ? m->f0[c] : 1;
         rough->weight[c][i] = most * f0;
         rough->grazing[c][i] = most * (1 - f0);
     }
-    glint_real_put(rough->alpha, plan->desc.precision, i, m->alpha);
+    glint_real_put(rough->alpha, precision, i, m->alpha);
     rough->plain[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
     ray->depth++;
     ray->inward = glint_has_lane(seen->hit.back, i);
@@ -81,21 +81,19 @@ static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, con
     static const double whole[3] = { 1, 1, 1 };
     const glint_plan *plan = &rough->plan;
     glint_bounce_material buffer;
-    double share[2];
+    const glint_bounce_material *m = glint_tile_bouncing(seen, plan, i, &buffer);
     glint_ray ray;
-    glint_rough_shares(from ? from : &rough->paths->batch, seen, &rough->frame, i, NULL, share);
-    rough->mirrors[i] = share[GLINT_BRANCH_MIRRORED] > 0;
-    rough->transmits[i] = share[GLINT_BRANCH_REFRACTED] > 0;
+    rough->mirrors[i] = m->mirrors && vec_dot(m->mirror, m->specular) > 0;
+    rough->transmits[i] = m->transmits;
     if (!rough->mirrors[i] && !rough->transmits[i])
         return 0;
     const bool both = rough->mirrors[i] && rough->transmits[i];
-    const bool sharp = glint_tile_bouncing(seen, plan, i, &buffer)->alpha < SHARP;
-    const uint32_t paths = sharp && !both ? 1 : glint_indirect_paths_of(plan, from, i);
+    const uint32_t paths = m->alpha < SHARP && !both ? 1 : glint_indirect_paths_of(plan, from, i);
     glint_batch_start_ray(from ? from : &rough->paths->batch, seen, &rough->frame, i, &ray);
     if (!from)
         ray.term = GLINT_TERM_MIRROR;
     if (glint_is_plain(plan, seen->surface.material[i]))
-        note_plain(rough, seen, i, paths, &ray);
+        note_plain(rough, seen, m, i, paths, &ray);
     glint_indirect_begin_point(rough->paths, to, plan, i, paths, whole, &ray, block);
     return paths;
 }
@@ -157,43 +155,21 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     glint_rays_put(&paths->first, &rough->plan, i, &ray);
 }
 
-/// Computes the weights of a group's rays by Schlick's reflectance.
-static void weigh(struct glint_rough *rough, uint32_t g)
-{
-    struct glint_indirect *paths = rough->paths;
-    const glint_precision precision = rough->plan.desc.precision;
-    const size_t at = (size_t)g * GLINT_GROUP;
-    double factor[GLINT_GROUP], grazing[GLINT_GROUP];
-    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        factor[i] = precision == GLINT_FLOAT ? (double)((const float *)paths->unmasked)[at + i] : paths->unmasked[at + i];
-        grazing[i] = precision == GLINT_FLOAT ? (double)((const float *)paths->cosine)[at + i] : paths->cosine[at + i];
-    }
-    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        const double r = 1 - grazing[i];
-        grazing[i] = ((r * r) * (r * r) * r) * factor[i];
-    }
-    for (int c = 0; c < 3; c++)
-        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-            const double weight = rough->weight[c][at + i] * factor[i] + rough->grazing[c][at + i] * grazing[i];
-            paths->first.weight[c][at + i] = weight < GLINT_WEIGHT_MAX ? weight : GLINT_WEIGHT_MAX;
-        }
-}
-
 /// Makes the first rays of the points in `wanted` that the stage spread serves.
-static void begin_plain(struct glint_rough *rough, uint32_t group_count, const uint16_t *wanted)
+static void begin_plain(struct glint_rough *rough, const glint_tile *seen, const uint16_t *wanted)
 {
-    glint_spread_args args = { .group_count = group_count, .wanted = wanted, .alpha = rough->alpha,
-                               .cosine = rough->paths->cosine, .weight = rough->paths->unmasked,
+    glint_spread_args args = { .group_count = seen->group_count, .wanted = wanted, .alpha = rough->alpha,
+                               .grazing = rough->paths->grazing, .weight = rough->paths->unmasked,
                                .disk = { rough->paths->direction[0], rough->paths->direction[1] } };
     for (int c = 0; c < 3; c++) {
-        args.normal[c] = rough->normal[c];
+        args.head_on[c] = rough->weight[c];
+        args.added[c] = rough->grazing[c];
+        args.ray_weight[c] = rough->paths->first.weight[c];
+        args.normal[c] = seen->surface.normal[c];
         args.ray[c] = rough->ray[c];
         args.direction[c] = rough->paths->first.direction[c];
     }
     rough->frame.stages->geometry[rough->plan.desc.precision].spread(&args);
-    for (uint32_t g = 0; g < group_count; g++)
-        if (wanted[g])
-            weigh(rough, g);
 }
 
 /// Makes the first rays of path number `path` of every point. Returns whether there are any.
@@ -207,7 +183,7 @@ static bool begin_paths(struct glint_rough *rough, const glint_tile *seen, const
     uint16_t plain[GLINT_TILE_GROUPS];
     for (uint32_t g = 0; g < seen->group_count; g++)
         plain[g] = paths->first.active[g] & rough->plain[g];
-    begin_plain(rough, seen->group_count, plain);
+    begin_plain(rough, seen, plain);
     for (uint32_t g = 0; g < seen->group_count; g++)
         for (unsigned bits = paths->first.active[g] & ~(unsigned)rough->plain[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
@@ -267,8 +243,10 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 static glint_status prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
     (void)from;
-    const glint_status status = plan->rough_samples ? glint_indirect_find_light_rows(plan, error) : GLINT_OK;
-    return plan->rough_samples && !status ? glint_sky_find(plan, error) : status;
+    if (!plan->rough_samples)
+        return GLINT_OK;
+    const glint_status status = glint_indirect_find_light_rows(plan, error);
+    return status ? status : glint_sky_find(plan, error);
 }
 
 static bool called(const glint_plan *plan)

@@ -5,10 +5,10 @@
 #include "engine/tile/batch.h"
 
 /// Estimates the shares of a ray's light that the rough surface of sample i reflects and refracts, to choose between
-/// them. Both are above 0 where light may go on. disk: see glint_rough_leave; NULL: the facet is not known yet. share: by
-/// GLINT_BRANCH_MIRRORED and GLINT_BRANCH_REFRACTED.
+/// them. Both are above 0 where light may go on. disk: see glint_rough_leave. share: by GLINT_BRANCH_MIRRORED and
+/// GLINT_BRANCH_REFRACTED.
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        const double *disk, double share[2]);
+                        const double disk[2], double share[2]);
 
 /// Returns whether a surface only reflects, from GGX's facets, so that the stage spread serves it.
 static inline bool glint_is_plain(const glint_plan *plan, uint32_t material)
@@ -18,12 +18,12 @@ static inline bool glint_is_plain(const glint_plan *plan, uint32_t material)
            !(glint_plan_bumps(plan) && plan->patterns->of[material].slope);
 }
 
-/// Returns the reflected share in channel c at a facet, without the material's factors. cosine: of the arriving ray
-/// and the facet. ratio: see glint_batch_ratio; only read with `fresnel`.
-double glint_rough_reflectance(const glint_bounce_material *m, int c, double cosine, double ratio);
-
-/// Finds the normal of sample i on the ray's side, with its bump, and the unit vector against the ray.
-void glint_rough_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3]);
+/// Returns the reflected share in channel c without the material's factors, by Schlick. grazing: (1 - cosine)^5 of the
+/// arriving ray and the facet.
+static inline double glint_schlick(const glint_bounce_material *m, int c, double grazing)
+{
+    return m->schlick ? m->f0[c] + (1 - m->f0[c]) * grazing : 1;
+}
 
 /// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
 /// direction, side, depth, media; multiplies the weight. The weight is 0 where the drawn facet sends the ray through the

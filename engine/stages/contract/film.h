@@ -24,6 +24,8 @@ typedef struct glint_scatter_args {
 
 // ---- spread: rays that the facets of GGX's distribution reflect ----
 
+#define GLINT_WEIGHT_MAX 1e150 ///< of a ray: products with a surface's light are finite below it
+
 typedef struct glint_spread_args {
     uint32_t group_count;
     const uint16_t *wanted; ///< one bit per lane
@@ -31,8 +33,11 @@ typedef struct glint_spread_args {
     const void *alpha; ///< real, above 0: width of the distribution
     const void *disk[2]; ///< real: a point of the unit disk
     void *direction[3]; ///< out, real, of length 1 up to rounding; may be the arrays of `disk`
-    void *cosine; ///< out, real: of the angle between ray and facet
-    void *weight; ///< out, real: G2 / G1, the probability that no other facet is in the way; 0 below the surface
+    double *grazing; ///< out: (1 - cosine)^5, where `cosine` is that of the angle between ray and facet
+    double *weight; ///< out: G2 / G1, the probability that no other facet is in the way; 0 below the surface
+    const double *head_on[3]; ///< weight of a ray that is reflected straight back, before the factor `weight`
+    const double *added[3]; ///< what `grazing` = 1 adds to it
+    double *ray_weight[3]; ///< out: weight * (head_on + added * grazing), at most GLINT_WEIGHT_MAX; NULL: not asked
 } glint_spread_args;
 // Groups without a wanted lane are not written. In other groups, lanes that are not wanted are undefined. The
 // arithmetic: ref/spread.h: a point of the disk becomes a cap of the hemisphere of directions from which the facet is

@@ -25,8 +25,13 @@ static void NAME(spread_sample)(const glint_spread_args *args, uint32_t i)
     NAME(vec3) out = NAME(sub)(NAME(times)(facet, 2 * cosine), e);
     REAL a = NAME(square_root)(e.z * e.z + aa * (1 - e.z * e.z));
     REAL b = NAME(square_root)(out.z * out.z + aa * NAME(max)(1 - out.z * out.z, 0));
-    ((REAL *)args->cosine)[i] = cosine;
-    ((REAL *)args->weight)[i] = 0 < out.z ? (out.z * (e.z + a)) / (out.z * a + e.z * b) : 0;
+    double r = 1 - (double)cosine;
+    args->grazing[i] = (r * r) * (r * r) * r;
+    double part = args->weight[i] = 0 < out.z ? (out.z * (e.z + a)) / (out.z * a + e.z * b) : 0;
+    for (int c = 0; c < 3 && args->ray_weight[0]; c++) {
+        double weight = args->head_on[c][i] * part + args->added[c][i] * (args->grazing[i] * part);
+        args->ray_weight[c][i] = weight < GLINT_WEIGHT_MAX ? weight : GLINT_WEIGHT_MAX;
+    }
     ((REAL *)args->direction[0])[i] = (out.x * tangent.x + out.y * bitangent.x) + out.z * n.x;
     ((REAL *)args->direction[1])[i] = (out.x * tangent.y + out.y * bitangent.y) + out.z * n.y;
     ((REAL *)args->direction[2])[i] = (out.x * tangent.z + out.y * bitangent.z) + out.z * n.z;

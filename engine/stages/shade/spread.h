@@ -19,7 +19,8 @@ static inline void R(facet_of)(const vr e[3], vr alpha, vr x, vr y, vr facet[3])
     facet[2] = r_select(some, fz / size, one);
 }
 
-static inline void R(spread_lanes)(const glint_spread_args *args, size_t at)
+/// Reflects the rays of VR lanes. Writes the cosines and the weights of these lanes.
+static inline void R(spread_lanes)(const glint_spread_args *args, size_t at, real *cosines, real *weights)
 {
     const vr zero = r_set(0), one = r_set(1), alpha = r_load((const real *)args->alpha + at), aa = alpha * alpha;
     vr n[3], v[3], tangent[3], bitangent[3], facet[3];
@@ -31,17 +32,47 @@ static inline void R(spread_lanes)(const glint_spread_args *args, size_t at)
     const vr cosine = r_min(DOT(e, facet), one), twice = r_set(2) * cosine;
     const vr x = twice * facet[0] - e[0], y = twice * facet[1] - e[1], z = twice * facet[2] - e[2];
     const vr a = r_sqrt(e[2] * e[2] + aa * (one - e[2] * e[2])), b = r_sqrt(z * z + aa * r_max(one - z * z, zero));
-    r_store((real *)args->cosine + at, cosine);
-    r_store((real *)args->weight + at, r_select(r_lt(zero, z), (z * (e[2] + a)) / (z * a + e[2] * b), zero));
+    r_store(cosines, cosine);
+    r_store(weights, r_select(r_lt(zero, z), (z * (e[2] + a)) / (z * a + e[2] * b), zero));
     for (int k = 0; k < 3; k++)
         r_store((real *)args->direction[k] + at, (x * tangent[k] + y * bitangent[k]) + z * n[k]);
+}
+
+/// Computes the weights of a group's rays.
+static inline void R(weigh_group)(const glint_spread_args *args, size_t at)
+{
+    for (size_t i = at; i < at + GLINT_GROUP; i += VD) {
+        const vd part = d_load(args->weight + i), grazing = d_load(args->grazing + i) * part;
+        for (int c = 0; c < 3; c++) {
+            const vd weight = d_load(args->head_on[c] + i) * part + d_load(args->added[c] + i) * grazing;
+            d_store(args->ray_weight[c] + i, d_min(weight, d_set(GLINT_WEIGHT_MAX)));
+        }
+    }
+}
+
+static inline void R(spread_group)(const glint_spread_args *args, size_t at)
+{
+    _Alignas(64) real cosine[GLINT_GROUP], weight[GLINT_GROUP];
+    _Alignas(64) double c[GLINT_GROUP];
+    for (uint32_t i = 0; i < GLINT_GROUP; i += VR)
+        R(spread_lanes)(args, at + i, cosine + i, weight + i);
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        c[i] = (double)cosine[i];
+        args->weight[at + i] = (double)weight[i];
+    }
+    for (uint32_t i = 0; i < GLINT_GROUP; i += VD) {
+        const vd r = d_set(1) - d_load(c + i);
+        d_store(args->grazing + at + i, (r * r) * (r * r) * r);
+    }
+    if (args->ray_weight[0])
+        R(weigh_group)(args, at);
 }
 
 static void R(spread)(const glint_spread_args *args)
 {
     for (uint32_t g = 0; g < args->group_count; g++)
-        for (uint32_t i = 0; args->wanted[g] && i < GLINT_GROUP; i += VR)
-            R(spread_lanes)(args, (size_t)g * GLINT_GROUP + i);
+        if (args->wanted[g])
+            R(spread_group)(args, (size_t)g * GLINT_GROUP);
 }
 
 #endif
