@@ -1,199 +1,335 @@
-// glint cost SCRIPT: what accuracy costs in time, for one frame of the user's own scene.
+// glint cost SCRIPT: what accuracy costs in time, for one frame of the user's own scene. The modules do the study; this
+// file gives them the script's scene, the options, the terminal and the files.
+#include <errno.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "bindings/cost/cost.h"
+#include "bindings/run/system.h"
 
-#define RUNS 11 // timed runs of each setting, not counting the first
-#define RUNS_QUICK 5
-#define MORE_RUNS 3 // factor of runs for settings whose quartile range overlaps a neighbour's
-#define RUN_MS 30.0 // short frames are repeated until a run takes this long
-#define RUN_QUICK_MS 5.0
-#define ALLOWANCE_MS 45e3 // time for the reference, in addition to the minimum number of samples
-#define ALLOWANCE_QUICK_MS 5e3
-#define BUDGET_SHARE 0.3 // share of a budget for the reference
-#define BASE_FRAMES 3 // frames: one that is dropped, one that counts the work, one that is timed
-#define LONG_MS 120e3 // a longer study is announced
+#define NAME_MAX_BYTES 256 // room for the names of pictures in a path
+
+static const char PAGE[] = {
+#include "bindings/cost/page.html.h"
+};
+static const char STYLE[] = {
+#include "bindings/cost/plot.css.h"
+};
+static const unsigned char PLOT_LUA[] = {
+#include "bindings/cost/plot.lua.h"
+};
+static const unsigned char PAGE_LUA[] = {
+#include "bindings/cost/page.lua.h"
+};
+static const unsigned char LINES_LUA[] = {
+#include "bindings/cost/lines.lua.h"
+};
+static const unsigned char KNOBS_LUA[] = {
+#include "bindings/cost/knobs.lua.h"
+};
+static const unsigned char TIMING_LUA[] = {
+#include "bindings/cost/timing.lua.h"
+};
+static const unsigned char ERRORS_LUA[] = {
+#include "bindings/cost/errors.lua.h"
+};
+static const unsigned char FRONT_LUA[] = {
+#include "bindings/cost/front.lua.h"
+};
+static const unsigned char STUDY_LUA[] = {
+#include "bindings/cost/study.lua.h"
+};
+static const glintL_carried modules[] = {
+    { "@plot.lua", PLOT_LUA, sizeof PLOT_LUA },       { "@page.lua", PAGE_LUA, sizeof PAGE_LUA },
+    { "@lines.lua", LINES_LUA, sizeof LINES_LUA },    { "@knobs.lua", KNOBS_LUA, sizeof KNOBS_LUA },
+    { "@timing.lua", TIMING_LUA, sizeof TIMING_LUA }, { "@errors.lua", ERRORS_LUA, sizeof ERRORS_LUA },
+    { "@front.lua", FRONT_LUA, sizeof FRONT_LUA },    { "@study.lua", STUDY_LUA, sizeof STUDY_LUA },
+};
+
+cost_study *cost_study_of(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
+
+// ---- Failures ----
+
+// Raises nil: the run has failed, or a signal stopped it.
+static int stop(lua_State *L)
+{
+    lua_pushnil(L);
+    return lua_error(L);
+}
+
+int cost_fail(lua_State *L, const glint_error *error)
+{
+    if (error->status != GLINT_ERR_CANCELLED)
+        glintL_run_fail(cost_study_of(L)->run, glintL_run_exit_code(error->status), 0, "%s", error->message);
+    return stop(L);
+}
+
+static int refuse_option(lua_State *L, const char *option, const char *message)
+{
+    glintL_run_fail(cost_study_of(L)->run, GLINTL_EXIT_USAGE, 0, "%s%s", option, message);
+    return stop(L);
+}
+
+static int out_of_memory(lua_State *L)
+{
+    glintL_run_fail(cost_study_of(L)->run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    return stop(L);
+}
+
+// refuse(message): fails the run, because an option is wrong.
+static int refuse(lua_State *L) { return refuse_option(L, "", luaL_checkstring(L, 1)); }
+
+// nearer(name, near, candidate): returns the one that is nearer to the misspelt name, or nil.
+static int nearer(lua_State *L)
+{
+    lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));
+    return 1;
+}
+
+void *cost_push_owner(lua_State *L, size_t size, const char *type, lua_CFunction drop)
+{
+    void *owner = lua_newuserdatauv(L, size, 0);
+    memset(owner, 0, size);
+    if (luaL_newmetatable(L, type)) {
+        glintL_set_function(L, "__gc", drop);
+        glintL_set_function(L, "__close", drop);
+    }
+    lua_setmetatable(L, -2);
+    return owner;
+}
+
+// ---- The report's folder ----
+
+static bool make_folders(const char *folder)
+{
+    char path[GLINTL_PATH_SIZE];
+    snprintf(path, sizeof path, "%s", folder);
+    for (char *at = path + 1; *at; at++) {
+        if (*at != '/')
+            continue;
+        *at = '\0';
+        mkdir(path, 0777); // a failure shows in the check below
+        *at = '/';
+    }
+    const int why = mkdir(path, 0777) == 0 ? 0 : errno;
+    struct stat info;
+    if (stat(path, &info) == 0) {
+        errno = ENOTDIR;
+        return S_ISDIR(info.st_mode);
+    }
+    errno = why;
+    return false;
+}
+
+static bool check_folder(const char *folder, char message[GLINTL_MESSAGE_SIZE])
+{
+    if (!*folder || strlen(folder) > GLINTL_PATH_SIZE - NAME_MAX_BYTES)
+        return glintL_complain(message, "a folder to write to expected, got '%.200s'", folder);
+    errno = 0;
+    if (make_folders(folder) && access(folder, W_OK | X_OK) == 0)
+        return true;
+    const int why = errno;
+    return glintL_complain(message, "a folder to write to expected, got '%.600s': %s", folder, strerror(why));
+}
+
+static glint_status remove_file(const char *path, glint_error *error)
+{
+    if (unlink(path) == 0 || errno == ENOENT)
+        return GLINT_OK;
+    *error = (glint_error) { .status = GLINT_ERR_IO };
+    snprintf(error->message, sizeof error->message, "%.400s: %s", path, strerror(errno));
+    return GLINT_ERR_IO;
+}
+
+// write(name, bytes): writes a file of the report; nil: removes it.
+static int write_file(lua_State *L)
+{
+    const cost_study *study = cost_study_of(L);
+    char path[GLINTL_PATH_SIZE];
+    size_t size;
+    const char *bytes = lua_tolstring(L, 2, &size);
+    glint_error error;
+    snprintf(path, sizeof path, "%s/%s", study->options->report, luaL_checkstring(L, 1));
+    const glint_status status = bytes ? glintL_write_text(path, bytes, size, &error) : remove_file(path, &error);
+    if (!status)
+        return 0;
+    glintL_run_fail(study->run, glintL_run_exit_code(status), 0, "--report: %s", error.message);
+    return stop(L);
+}
 
 // ---- The scene ----
 
-static bool read_scene(cli_options *options, glintL_run *run, cost_moments **moments)
+static bool read_scene(const cost_study *study)
 {
     cli_script script;
-    *moments = cost_moments_open(&run->moments);
-    if (!*moments)
-        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    glintL_run *run = study->run;
     run->mode = GLINTL_MODE_EXPLAIN;
-    run->explain_frame = options->frame;
+    run->explain_frame = study->options->frame;
     run->keeps_scene = true;
     glintL_selection_clear(&run->request.selection); // here --frame is not a selection
-    cli_run_script(&script, options, run);
+    cli_run_script(&script, study->options, run);
     cli_close_script(&script);
     if (!run->exit_code && !run->interrupted && !run->retained_scene)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
                         "--frame: expected a frame of the script, 1 .. %" PRId64 ", got '%" PRId64 "'", run->count,
-                        options->frame);
+                        study->options->frame);
     return !run->exit_code && !run->interrupted;
 }
 
-static void say_frame(const cost_study *study)
+static void add_options(lua_State *L, const cost_study *study)
 {
+    const cli_options *options = study->options;
     const glintL_run *run = study->run;
-    const glint_render_desc *desc = &study->own->desc;
-    char total[32] = "";
+    glintL_set_flag(L, "quick", options->quick);
+    glintL_set_flag(L, "json", options->json);
+    glintL_set_text(L, "report", options->report);
+    glintL_set_text(L, "knobs", options->knobs);
+    glintL_set_number(L, "start_ms", study->output->start_ms);
+    if (options->budget_s > 0)
+        glintL_set_number(L, "deadline_ms", study->output->start_ms + options->budget_s * 1e3);
+    glintL_set_text(L, "script", run->script);
+    glintL_set_whole(L, "frame", run->explain_frame);
     if (run->call_count == 0)
-        snprintf(total, sizeof total, " of %" PRId64, run->count);
-    if (study->output->quiet)
-        return;
-    fprintf(stderr, "%s, frame %" PRId64 "%s%s: %.0f x %.0f, %.0f sample%s a pixel\n", run->script, run->explain_frame,
-            total, run->call_count == 0 && run->count == 1 ? "" : " (choose another with --frame N)", desc->width,
-            desc->height, desc->samples, desc->samples == 1 ? "" : "s");
+        glintL_set_whole(L, "total", run->count);
+    lua_pushlstring(L, PAGE, sizeof PAGE);
+    lua_setfield(L, -2, "page");
+    lua_pushlstring(L, STYLE, sizeof STYLE);
+    lua_setfield(L, -2, "style");
 }
 
-// ---- The phases ----
-
-// Guesses the time of a case from its number of rays, before its first run.
-static bool guess(cost_study *study, int index)
+// open(): runs the script. Returns the options, and the frame's scene and options as the knobs see them.
+static int open_study(lua_State *L)
 {
-    cost_case *c = &study->cases[index];
-    double rays = 0, base_rays = 0;
-    if (!cost_expect(study, c, &rays) || !cost_expect(study, &study->cases[0], &base_rays))
-        return false;
-    const cost_case *base = &study->cases[0];
-    const double frame_ms = base->guess_ms > 0 ? base->guess_ms : base->estimate_ms;
-    c->estimate_ms = fmax(frame_ms * (base_rays > 0 ? fmax(rays / base_rays, 0.2) : 1), study->run_ms);
-    return true;
+    cost_study *study = cost_study_of(L);
+    const cli_options *options = study->options;
+    char message[GLINTL_MESSAGE_SIZE];
+    if (options->is_live && !options->report)
+        return refuse_option(L, "--live: ", "expected together with --report DIR, whose page shows the live figure");
+    if (options->report && !check_folder(options->report, message))
+        return refuse_option(L, "--report: ", message);
+    study->moments = cost_moments_open(&study->run->moments);
+    if (!study->moments)
+        return out_of_memory(L);
+    if (!read_scene(study))
+        return stop(L);
+    study->own = &study->run->retained_render;
+    if (!cost_scene_open(&study->scene, study->run->retained_scene))
+        return out_of_memory(L);
+    lua_newtable(L);
+    add_options(L, study);
+    cost_add_subject(L, study);
+    return 1;
 }
 
-static bool guess_all(cost_study *study, int from)
-{
-    for (int i = from; i < study->case_count; i++)
-        if (!guess(study, i))
-            return false;
-    return true;
-}
+// ---- The course of the study ----
 
-static void warn_long(const cost_study *study)
+// live(): returns the HTML of --live for the page, or nil.
+static int live(lua_State *L)
 {
-    double ms = cost_round_ms(study) * (study->runs + 2);
-    if (study->deadline_ms > 0 || ms < LONG_MS || study->output->quiet)
-        return;
-    cli_progress *progress = study->output->progress;
-    if (progress)
-        cli_progress_clear(progress);
-    fprintf(stderr,
-            "glint: this will take about %.0f minutes; use --quick, --budget SECONDS, --knobs LIST or --size to "
-            "shorten it, or press Ctrl-C to see the results so far\n",
-            ceil(ms / 60e3));
-}
-
-// Returns the time to measure a case: one run, its errors, and the least number of further runs.
-static double price(const cost_study *study, const cost_case *c)
-{
-    return study->overhead_ms + c->estimate_ms * (1 + COST_RUNS_LEAST);
-}
-
-// Leaves out the slowest cases, from index `from` on, until the others fit the budget.
-static void fit_cases(cost_study *study, int from)
-{
-    for (;;) {
-        double sum = from == 1 ? study->cases[0].estimate_ms * COST_RUNS_LEAST : 0;
-        int slowest = 0;
-        for (int i = 1; i < study->case_count; i++) {
-            const cost_case *c = &study->cases[i];
-            if (c->is_left_out)
-                continue;
-            sum += i < from ? c->estimate_ms * COST_RUNS_LEAST : price(study, c);
-            if (i >= from && (slowest == 0 || price(study, c) >= price(study, &study->cases[slowest])))
-                slowest = i;
-        }
-        if (slowest == 0 || sum <= cost_left_ms(study))
-            return;
-        study->cases[slowest].is_left_out = true;
+    const cost_study *study = cost_study_of(L);
+    char message[GLINTL_MESSAGE_SIZE];
+    int code = 0;
+    if (!study->options->is_live)
+        return 0;
+    char *html = cli_live(study->options, &study->run->request, &code, message);
+    if (!html) {
+        glintL_run_fail(study->run, code, 0, "%s", message);
+        return stop(L);
     }
+    lua_pushstring(L, html);
+    free(html);
+    return 1;
 }
 
-// Runs the cases from index `from` on once and measures their errors. Cases that do not fit the budget are left out.
-static bool measure_cases(cost_study *study, int from)
+// begin(): opens the progress bar and the renderers. Returns the description of the machine.
+static int begin(lua_State *L)
 {
-    fit_cases(study, from);
-    for (int i = from; i < study->case_count; i++) {
-        cost_case *c = &study->cases[i];
-        if (c->is_left_out)
-            continue;
-        double remaining_ms = cost_round_ms(study) * study->runs;
-        for (int later = i + 1; later < study->case_count; later++)
-            remaining_ms += study->cases[later].is_left_out ? 0 : study->overhead_ms + study->cases[later].estimate_ms;
-        cost_show(study, "errors", study->overhead_ms + c->estimate_ms, remaining_ms);
-        if (cost_is_stopped(study) || !cost_measure(study, c))
-            return false;
+    cost_study *study = cost_study_of(L);
+    char model[128], machine[256];
+    glint_error error;
+    if (!study->output->quiet)
+        study->output->progress = cli_progress_create(study->output->color);
+    if (!cost_open_renderers(study, &error))
+        return cost_fail(L, &error);
+    const glint_renderer *renderer = study->renderers[false][false];
+    const int threads = glint_renderer_threads(renderer);
+    glintL_processor_name(model);
+    snprintf(machine, sizeof machine, "%.100s, %d thread%s, %s, glint " GLINT_VERSION ", compiler %.40s", model,
+             threads, threads == 1 ? "" : "s", glint_renderer_isa(renderer), __VERSION__);
+    lua_pushstring(L, machine);
+    return 1;
+}
+
+// finish(): closes the progress bar. Returns whether the run has not failed.
+static int finish(lua_State *L)
+{
+    cost_study *study = cost_study_of(L);
+    cli_progress_destroy(study->output->progress);
+    study->output->progress = NULL;
+    lua_pushboolean(L, !study->run->exit_code);
+    return 1;
+}
+
+// say(text): prints a line for people.
+static int say(lua_State *L)
+{
+    const cli_output *output = cost_study_of(L)->output;
+    if (output->progress)
+        cli_progress_clear(output->progress);
+    if (!output->quiet)
+        fputs(luaL_checkstring(L, 1), stderr);
+    return 0;
+}
+
+// show(what, step_ms, remaining_ms): shows the current step on a terminal, with the expected time of this step and of
+// the rest of the study. Raises nil if the run was stopped.
+static int show(lua_State *L)
+{
+    const cost_study *study = cost_study_of(L);
+    const char *what = luaL_checkstring(L, 1);
+    const double step_ms = luaL_checknumber(L, 2), remaining_ms = luaL_checknumber(L, 3);
+    if (study->output->progress)
+        cli_progress_step(study->output->progress, what, glintL_now_ms() - study->output->start_ms, step_ms,
+                          remaining_ms);
+    return study->run->interrupted || study->run->exit_code ? stop(L) : 0;
+}
+
+// now(): returns the time in milliseconds.
+static int now(lua_State *L)
+{
+    lua_pushnumber(L, glintL_now_ms());
+    return 1;
+}
+
+// print(text): prints the results.
+static int print(lua_State *L)
+{
+    size_t size;
+    const char *text = luaL_checklstring(L, 1, &size);
+    fwrite(text, 1, size, cost_study_of(L)->output->data);
+    return 0;
+}
+
+static const luaL_Reg functions[] = {
+    { "refuse", refuse }, { "nearer", nearer }, { "open", open_study },  { "live", live },
+    { "begin", begin },   { "finish", finish }, { "say", say },          { "show", show },
+    { "now", now },       { "print", print },   { "write", write_file }, { NULL, NULL },
+};
+
+static void push_tools(lua_State *L, const void *context)
+{
+    const luaL_Reg *const lists[] = { functions, cost_measure_functions, cost_error_functions };
+    const cost_study *study = context;
+    lua_newtable(L);
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        lua_pushlightuserdata(L, (void *)study);
+        luaL_setfuncs(L, lists[i], 1);
     }
-    return true;
+    glintL_set_text(L, "knobs", study->options->knobs);
 }
-
-// Measures the script's own setting, which is never left out, and the time that it takes to find an error.
-static bool measure_base(cost_study *study)
-{
-    double start = glintL_now_ms();
-    cost_show(study, "errors", study->cases[0].estimate_ms, cost_round_ms(study) * (study->runs + 2));
-    bool good = cost_measure(study, &study->cases[0]);
-    study->overhead_ms = fmax(glintL_now_ms() - start - study->cases[0].guess_ms, 0);
-    return good && guess_all(study, 1);
-}
-
-static bool name_unmeasured(cost_study *study)
-{
-    char name[COST_LABEL_SIZE];
-    for (int i = 0; i < study->row_count; i++) {
-        if (study->cases[study->rows[i].measured].run_count > 0)
-            continue;
-        cost_row_name(&study->rows[i], name);
-        if (!cost_leave_out(study, "%s: not measured: the budget leaves no time for it", name))
-            return false;
-    }
-    return true;
-}
-
-// Returns whether the budget has time to measure the script's own setting, which takes BASE_FRAMES frames after the
-// first.
-static bool has_capacity(const cost_study *study)
-{
-    return cost_left_ms(study) >= BASE_FRAMES * study->cases[0].estimate_ms;
-}
-
-static bool stop_after_first(cost_study *study)
-{
-    study->runs = 1;
-    return cost_leave_out(study, "every error, and all runs except the first frame: the budget leaves no time for "
-                                 "more") &&
-           name_unmeasured(study);
-}
-
-static bool run_study(cost_study *study)
-{
-    const double quick = study->options->quick ? ALLOWANCE_QUICK_MS : ALLOWANCE_MS;
-    cost_show(study, "first frame", 1, 0);
-    if (!cost_open_renderers(study) || !cost_run(study, &study->cases[0]))
-        return false;
-    study->cases[0].is_first_alone = true;
-    if (!has_capacity(study))
-        return stop_after_first(study);
-    if (!guess_all(study, 1))
-        return false;
-    warn_long(study);
-    if (!cost_make_reference(study, study->deadline_ms > 0 ? BUDGET_SHARE * cost_left_ms(study) : quick) ||
-        !measure_base(study) || !measure_cases(study, 1))
-        return false;
-    const int alone = study->case_count;
-    if (!cost_add_combinations(study) || !guess_all(study, alone) || !measure_cases(study, alone) ||
-        !name_unmeasured(study))
-        return false;
-    return cost_time_cases(study);
-}
-
-// ---- The study ----
 
 static void close_study(cost_study *study)
 {
@@ -201,131 +337,26 @@ static void close_study(cost_study *study)
         for (int counts = 0; counts < 2; counts++)
             if (study->renderers[keeps][counts] != study->run->renderer)
                 glint_renderer_destroy(study->renderers[keeps][counts]);
-    for (int i = 0; i < study->case_count; i++) {
-        free(study->cases[i].picture);
-        free(study->cases[i].difference);
-    }
     cost_moments_close(study->moments);
-    for (int i = 0; i < study->left_out_count; i++)
-        free(study->left_out[i]);
-    free(study->left_out);
-    free(study->live);
-    free(study->cases);
-    free(study->rows);
-    free(study->truth.object);
-    free(study->truth.lit);
     glint_reference_destroy(study->reference);
     cost_scene_close(&study->scene);
-    free(study);
-}
-
-// Warns that a frame with an open shutter is measured as an instant, because its times are not known.
-static bool warn_of_instant(cost_study *study)
-{
-    const char *lack = cost_moments_lack(study->moments);
-    return !lack || cost_leave_out(study, "the open shutter: %s; the frame is measured at one instant, without "
-                                          "motion blur", lack);
-}
-
-// Opens a study, which takes over the moments, on failure too.
-static cost_study *open_study(cli_options *options, cli_output *output, glintL_run *run, cost_moments *moments)
-{
-    cost_study *study = calloc(1, sizeof *study);
-    double times[COST_VALUES_MAX];
-    if (!study) {
-        cost_moments_close(moments);
-        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-        return NULL;
-    }
-    study->output = output;
-    study->run = run;
-    study->options = options;
-    study->moments = moments;
-    study->shutter_times = cost_moments_counts(moments, times) > 0 ? (int)times[0] : 0;
-    study->own = &run->retained_render;
-    study->runs = options->quick ? RUNS_QUICK : RUNS;
-    study->most_runs = MORE_RUNS * study->runs < COST_RUNS_MAX ? MORE_RUNS * study->runs : COST_RUNS_MAX;
-    study->run_ms = options->quick ? RUN_QUICK_MS : RUN_MS;
-    study->start_ms = output->start_ms;
-    study->deadline_ms = options->budget_s > 0 ? output->start_ms + options->budget_s * 1e3 : 0;
-    cost_subject subject = { .plan = run->explain_plan,
-                             .render = study->own,
-                             .scene = &study->scene,
-                             .moments = moments,
-                             .has_neighbour = run->retained_neighbour != NULL,
-                             .is_pfm = glintL_name_is_linear(study->own->output) };
-    if (!cost_scene_open(&study->scene, run->retained_scene))
-        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    else if (cost_list_cases(study, &subject))
-        warn_of_instant(study);
-    return study;
-}
-
-// Returns whether there are rows to show.
-static bool has_rows(const cost_study *study)
-{
-    for (int i = 0; i < study->row_count; i++)
-        if (study->cases[study->rows[i].measured].run_count > 0)
-            return true;
-    return false;
-}
-
-static void present(cost_study *study)
-{
-    char message[GLINTL_MESSAGE_SIZE];
-    cost_judge(study);
-    if (!cost_print(study, study->output->data, message))
-        glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "%s", message);
-    const int code = study->options->report ? cost_report_write(study, study->options->report, message) : 0;
-    if (code)
-        glintL_run_fail(study->run, code, 0, "--report: %s", message);
-}
-
-// Checks the names of the knobs. Whether the scene responds to them is checked later.
-static bool check_options(const cli_options *options, glintL_run *run)
-{
-    char message[GLINTL_MESSAGE_SIZE];
-    if (options->knobs && !cost_knobs_check(options->knobs, message))
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--knobs: %s", message);
-    if (options->is_live && !options->report)
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--live: expected together with --report DIR, whose page "
-                                                          "shows the live figure");
-    if (options->report && !cost_report_check(options->report, message))
-        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--report: %s", message);
-    return true;
-}
-
-static bool add_live(cost_study *study)
-{
-    char message[GLINTL_MESSAGE_SIZE];
-    int code = 0;
-    study->live = cli_live(study->options, &study->run->request, &code, message);
-    return study->live || glintL_run_fail(study->run, code, 0, "%s", message);
 }
 
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run)
 {
-    cost_moments *moments = NULL;
-    cost_study *study = NULL;
-    if (check_options(options, run) && read_scene(options, run, &moments))
-        study = open_study(options, output, run, moments);
-    else
-        cost_moments_close(moments);
-    if (study && !run->exit_code && (!options->is_live || add_live(study))) {
-        say_frame(study);
-        if (!output->quiet)
-            output->progress = cli_progress_create(output->color);
-        study->is_complete = run_study(study);
-        cli_progress_destroy(output->progress);
-        output->progress = NULL;
-        if (!run->exit_code && has_rows(study))
-            present(study);
-    }
+    cost_study study = { .output = output, .run = run, .options = options };
+    char message[GLINTL_MESSAGE_SIZE];
+    glintL_made_text made;
+    if (!glintL_make_text(modules, sizeof modules / sizeof *modules, "study", push_tools, &study, &made, message) &&
+        !run->interrupted)
+        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", message);
+    glintL_drop_text(&made);
+    cli_progress_destroy(output->progress);
+    output->progress = NULL;
     if (run->interrupted)
         cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
     else if (run->exit_code)
         cli_report_error(output, 0, run->exit_code, run->message);
-    if (study)
-        close_study(study);
+    close_study(&study);
     return run->exit_code;
 }

@@ -1,19 +1,16 @@
-// One setting in the engine: its plan, its picture and its time.
-#include <math.h>
+// One setting in the engine: its plan, its picture and its time. Functions for the modules.
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "bindings/cost/cost.h"
 
-bool cost_fail(cost_study *study, const glint_error *error)
-{
-    if (error->status != GLINT_ERR_CANCELLED)
-        glintL_run_fail(study->run, glintL_run_exit_code(error->status), 0, "%s", error->message);
-    return false;
-}
+#define PLAN "cost.plan"
+#define IMAGE "cost.image"
 
-bool cost_is_stopped(const cost_study *study) { return study->run->interrupted || study->run->exit_code; }
+typedef struct planned {
+    glint_plan *plan; // owned
+    cost_setting setting;
+} planned;
 
 // ---- Renderers ----
 
@@ -27,17 +24,16 @@ static void use_renderer(cost_study *study, glint_renderer *renderer)
         cli_progress_watch(study->output->progress, renderer);
 }
 
-bool cost_open_renderers(cost_study *study)
+bool cost_open_renderers(cost_study *study, glint_error *error)
 {
     glintL_run *run = study->run;
-    glint_error error;
     for (int keeps = run->retained_neighbour ? 1 : 0; keeps >= 0; keeps--)
         for (int counts = 1; counts >= 0; counts--) {
             run->renderer = NULL;
             run->request.no_reuse = !keeps;
             run->counts_work = counts;
-            if (!glintL_run_open(run, &error))
-                return cost_fail(study, &error);
+            if (!glintL_run_open(run, error))
+                return false;
             study->renderers[keeps][counts] = run->renderer;
         }
     return true;
@@ -45,68 +41,44 @@ bool cost_open_renderers(cost_study *study)
 
 // ---- Plans ----
 
-static glint_status apply_knobs(cost_study *study, const cost_case *c, cost_draft *draft, glint_error *error)
-{
-    glint_status status = GLINT_OK;
-    for (int i = 0; i < cost_knob_count && !status; i++)
-        if (c->choice[i] >= 0)
-            status = cost_knob_apply(&cost_knobs[i], draft, study->values[i].value[c->choice[i]], error);
-    return status;
-}
-
 static glint_status out_of_memory(glint_error *error)
 {
     *error = (glint_error) { GLINT_ERR_NOMEM, "out of memory" };
     return GLINT_ERR_NOMEM;
 }
 
-// Applies the render options of a case. A shot may replace passes, samples and seed.
-static glint_status apply_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft, glint_error *error)
-{
-    glint_render_desc *desc = &draft->render.desc;
-    glint_status status = apply_knobs(study, c, draft, error);
-    desc->passes = how->passes;
-    desc->codes = how->codes;
-    desc->samples = how->samples > 0 ? how->samples : desc->samples;
-    desc->seed = how->seed >= 0 ? how->seed : desc->seed;
-    desc->adaptive = how->is_exact ? 0 : desc->adaptive;
-    desc->precision = how->is_exact ? GLINT_DOUBLE : desc->precision;
-    return status;
-}
-
-// Plans the scene at one time of an open shutter, with the case's settings applied.
-static glint_status plan_time(cost_study *study, const cost_case *c, const cost_shot *how, int times, int k, glint_plan **out,
+// Plans the scene at one time of an open shutter.
+static glint_status plan_time(const cost_study *study, const cost_setting *setting, int k, glint_plan **out,
                               glint_error *error)
 {
     cost_scene scene;
-    cost_draft *draft = malloc(sizeof *draft);
-    glint_status status = cost_moments_enter(study->moments, study->scene.original, times, k, error);
-    bool good = draft && !status && cost_scene_open(&scene, study->scene.original);
-    if (!status && !good)
-        status = out_of_memory(error);
-    if (good) {
-        *draft = (cost_draft) { .scene = &scene, .render = *study->own };
-        status = apply_case(study, c, how, draft, error);
-        const glint_render_desc desc = glint_shutter_desc(&draft->render.desc);
+    const glint_render_desc desc = glint_shutter_desc(&setting->render.desc);
+    glint_status status = cost_moments_enter(study->moments, study->scene.original, setting->shutter_times, k, error);
+    if (status)
+        return status;
+    if (cost_scene_open(&scene, study->scene.original)) {
+        status = cost_setting_apply(setting, &scene, error);
         if (!status)
             status = glint_plan_create(scene.scene, &desc, out, error);
         cost_scene_restore(&scene);
-        cost_scene_close(&scene);
+    } else {
+        status = out_of_memory(error);
     }
-    free(draft);
+    cost_scene_close(&scene);
     return status;
 }
 
 // Plans all times. Afterwards the scene is at the frame's own instant. On success the caller owns the list.
-static glint_status plan_times(cost_study *study, const cost_case *c, const cost_shot *how, int count, glint_plan ***out,
+static glint_status plan_times(const cost_study *study, const cost_setting *setting, int count, glint_plan ***out,
                                glint_error *error)
 {
     glint_plan **times = calloc((size_t)count, sizeof *times);
     glint_status status = times ? GLINT_OK : out_of_memory(error);
     for (int k = 0; k < count && !status; k++)
-        status = plan_time(study, c, how, count, k, &times[k], error);
+        status = plan_time(study, setting, k, &times[k], error);
     glint_error ignored;
-    const glint_status back = cost_moments_enter(study->moments, study->scene.original, 0, 0, status ? &ignored : error);
+    const glint_status back =
+        cost_moments_enter(study->moments, study->scene.original, 0, 0, status ? &ignored : error);
     status = status ? status : back;
     for (int k = 0; times && status && k < count; k++)
         glint_plan_destroy(times[k]);
@@ -117,57 +89,70 @@ static glint_status plan_times(cost_study *study, const cost_case *c, const cost
     return status;
 }
 
-// Plans a case. Afterwards the scene is restored. `draft` receives how to render and write the case.
-static glint_status plan_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft,
-                              glint_plan **out, glint_error *error)
+// Plans a setting. Afterwards the scene is restored.
+static glint_status plan_setting(cost_study *study, const cost_setting *setting, glint_plan **out, glint_error *error)
 {
-    const cost_draft own = { .scene = &study->scene, .render = *study->own, .shutter_times = study->shutter_times };
+    cost_scene *scene = &study->scene;
     glint_plan **times = NULL;
-    *draft = own;
-    glint_status status = apply_case(study, c, how, draft, error);
-    const int count = how->is_painted ? 0 : draft->shutter_times; // decisions are of the frame's own instant
-    if (!status && count > 0) {
-        cost_scene_restore(&study->scene);
-        status = plan_times(study, c, how, count, &times, error);
-        *draft = own;
-        status = status ? status : apply_case(study, c, how, draft, error);
-    }
-    if (!status && how->is_painted)
-        status = cost_scene_show_light(&study->scene, how->light, error);
+    const int count = setting->is_painted ? 0 : setting->shutter_times; // decisions are of the frame's own instant
+    glint_status status = count > 0 ? plan_times(study, setting, count, &times, error) : GLINT_OK;
+    if (!status)
+        status = cost_setting_apply(setting, scene, error);
+    if (!status && setting->is_painted)
+        status = cost_scene_show_light(scene, setting->light, error);
     if (!status && times)
-        status = glint_plan_create_exposed(study->scene.scene, &draft->render.desc, times, (size_t)count, out, error);
+        status = glint_plan_create_exposed(scene->scene, &setting->render.desc, times, (size_t)count, out, error);
     else if (!status)
-        status = glint_plan_create(study->scene.scene, &draft->render.desc, out, error);
-    cost_scene_restore(&study->scene);
+        status = glint_plan_create(scene->scene, &setting->render.desc, out, error);
+    cost_scene_restore(scene);
     return status;
 }
 
-bool cost_expect(cost_study *study, const cost_case *c, double *rays)
+static int drop_plan(lua_State *L)
 {
-    const cost_shot how = { .passes = 1u << GLINT_PASS_BEAUTY, .seed = -1 };
-    glint_plan *plan = NULL;
+    planned *p = lua_touserdata(L, 1);
+    glint_plan_destroy(p->plan);
+    p->plan = NULL;
+    return 0;
+}
+
+// plan(choice, shot, samples, seed, exact, light): plans the frame with the values of knobs in the table. shot: "file"
+// (the default) as the script's frame is written; "both": with the linear picture too; "beauty": this picture only;
+// "decisions": matt white, lit by light number `light`; nil: by all. exact: decided in double.
+static int plan(lua_State *L)
+{
+    lua_settop(L, 6);
+    cost_study *study = cost_study_of(L);
+    planned *p = cost_push_owner(L, sizeof *p, PLAN, drop_plan);
     glint_error error;
-    cost_draft *draft = malloc(sizeof *draft);
-    if (!draft)
-        return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    bool good = !plan_case(study, c, &how, draft, &plan, &error) || cost_fail(study, &error);
-    if (good) {
-        glint_ray_counts counts = glint_plan_expected_rays(plan);
-        *rays = (double)counts.primary + (double)counts.shadow + (double)counts.mirror + (double)counts.refraction +
-                (double)counts.indirect;
-    }
-    glint_plan_destroy(plan);
-    free(draft);
-    return good;
+    cost_setting_read(L, study, &p->setting);
+    return plan_setting(study, &p->setting, &p->plan, &error) ? cost_fail(L, &error) : 1;
+}
+
+// rays(plan): returns the number of rays that the plan expects.
+static int rays(lua_State *L)
+{
+    const planned *p = luaL_checkudata(L, 1, PLAN);
+    const glint_ray_counts counts = glint_plan_expected_rays(p->plan);
+    lua_pushnumber(L, (double)counts.primary + (double)counts.shadow + (double)counts.mirror +
+                          (double)counts.refraction + (double)counts.indirect);
+    return 1;
 }
 
 // ---- One run ----
 
-double cost_cpu_ms(void)
+static double cpu_ms(void)
 {
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+// cpu(): returns the processor time so far, of all threads of the process.
+static int cpu(lua_State *L)
+{
+    lua_pushnumber(L, cpu_ms());
+    return 1;
 }
 
 static glint_status encode_values(const glint_image *image, glint_error *error)
@@ -204,107 +189,136 @@ static glint_status encode(cost_study *study, const glintL_render *render, glint
     return result.status;
 }
 
-// Renders the neighbouring frame first, if the case is measured after it.
-static glint_status prepare(cost_study *study, const cost_draft *draft, bool counts, glint_error *error)
+// Renders the neighbouring frame first, if the setting is measured after it.
+static glint_status prepare(cost_study *study, const cost_setting *setting, bool counts, glint_error *error)
 {
     glint_image *before = NULL;
     double ms;
-    use_renderer(study, study->renderers[draft->reuses][counts]);
-    if (!draft->reuses)
+    use_renderer(study, study->renderers[setting->reuses][counts]);
+    if (!setting->reuses)
         return GLINT_OK;
     glint_status status = glint_render(study->run->renderer, study->run->retained_neighbour, &before, NULL, error);
-    if (!status && draft->render.desc.codes)
-        status = encode(study, &draft->render, before, &ms, error);
+    if (!status && setting->render.desc.codes)
+        status = encode(study, &setting->render, before, &ms, error);
     glint_image_release(before);
     return status;
 }
 
+typedef struct times {
+    double render, tone, encode, wall, cpu;
+} times;
+
 // Renders and encodes a frame; adds its times to `sum`.
-static glint_status time_frame(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
-                               double sum[COST_PART_COUNT], glint_error *error)
+static glint_status time_frame(cost_study *study, const planned *p, times *sum, glint_frame_stats *stats,
+                               glint_error *error)
 {
     glint_image *image = NULL;
     double encode_ms = 0;
-    glint_status status = prepare(study, draft, false, error);
-    const double cpu = cost_cpu_ms();
+    glint_status status = prepare(study, &p->setting, false, error);
+    const double start = cpu_ms();
     if (!status)
-        status = glint_render(study->run->renderer, plan, &image, &c->stats, error);
+        status = glint_render(study->run->renderer, p->plan, &image, stats, error);
     if (!status)
-        status = encode(study, &draft->render, image, &encode_ms, error);
+        status = encode(study, &p->setting.render, image, &encode_ms, error);
     glint_image_release(image);
     if (status)
         return status;
-    sum[COST_RENDER] += c->stats.render_ms;
-    sum[COST_TONE] += c->stats.tone_ms;
-    sum[COST_ENCODE] += encode_ms;
-    sum[COST_TOTAL] += c->stats.render_ms + c->stats.tone_ms + encode_ms;
-    sum[COST_CPU] += cost_cpu_ms() - cpu;
+    sum->render += stats->render_ms;
+    sum->tone += stats->tone_ms;
+    sum->encode += encode_ms;
+    sum->wall += stats->render_ms + stats->tone_ms + encode_ms;
+    sum->cpu += cpu_ms() - start;
     return GLINT_OK;
 }
 
-static glint_status time_run(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
-                             glint_error *error)
+static void push_stats(lua_State *L, const glint_frame_stats *stats)
 {
-    double sum[COST_PART_COUNT] = { 0 };
-    const int frames = c->batch > 0 ? c->batch : 1;
-    for (int i = 0; i < frames; i++) {
-        glint_status status = time_frame(study, c, plan, draft, sum, error);
-        if (status)
-            return status;
-    }
-    for (int part = 0; part < COST_PART_COUNT; part++)
-        c->ms[part][c->run_count] = sum[part] / frames;
-    c->run_count++;
-    return GLINT_OK;
+    const glint_ray_counts *counts = &stats->rays;
+    const glint_work *work = &stats->work;
+    lua_newtable(L);
+    glintL_set_number(L, "render_ms", stats->render_ms);
+    glintL_set_number(L, "tone_ms", stats->tone_ms);
+    glintL_set_whole(L, "refined", (lua_Integer)stats->refined);
+    lua_newtable(L);
+    glintL_set_whole(L, "primary", (lua_Integer)counts->primary);
+    glintL_set_whole(L, "shadow", (lua_Integer)counts->shadow);
+    glintL_set_whole(L, "mirror", (lua_Integer)counts->mirror);
+    glintL_set_whole(L, "refraction", (lua_Integer)counts->refraction);
+    glintL_set_whole(L, "indirect", (lua_Integer)counts->indirect);
+    lua_setfield(L, -2, "rays");
+    lua_newtable(L);
+    glintL_set_number(L, "tests", (double)work->tests);
+    glintL_set_number(L, "light_samples", (double)work->light_samples);
+    glintL_set_number(L, "powers", (double)work->powers);
+    glintL_set_number(L, "sites", (double)work->sites);
+    glintL_set_number(L, "overlaps", (double)work->overlaps);
+    glintL_set_number(L, "lights_seen", (double)work->lights_seen);
+    lua_setfield(L, -2, "work");
 }
 
-// Returns how a case is rendered for timing.
-cost_shot cost_own_shot(const cost_study *study)
+// time(plan, frames): renders, encodes and times the frame, in memory. Returns the times of one, and its statistics.
+static int time_run(lua_State *L)
 {
-    const bool codes = !glintL_name_is_linear(study->own->output);
-    return (cost_shot) { .passes = codes ? 0 : 1u << GLINT_PASS_BEAUTY, .codes = codes, .seed = -1 };
-}
-
-bool cost_run(cost_study *study, cost_case *c)
-{
-    const cost_shot how = cost_own_shot(study);
-    glint_plan *plan = NULL;
+    const planned *p = luaL_checkudata(L, 1, PLAN);
+    const lua_Integer frames = luaL_checkinteger(L, 2);
+    times sum = { 0 };
+    glint_frame_stats stats = { 0 };
     glint_error error;
-    double start = glintL_now_ms();
-    cost_draft *draft = malloc(sizeof *draft);
-    if (!draft)
-        return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    if (c->is_first_alone) { // the first run warms everything up
-        c->run_count = 0;
-        c->is_first_alone = false;
-    }
-    glint_status status = plan_case(study, c, &how, draft, &plan, &error);
-    c->bits = draft->render.desc.tone.bits;
-    if (!status)
-        status = time_run(study, c, plan, draft, &error);
-    glint_plan_destroy(plan);
-    free(draft);
-    c->estimate_ms = glintL_now_ms() - start;
-    return status ? cost_fail(study, &error) : true;
+    for (lua_Integer i = 0; i < frames; i++)
+        if (time_frame(cost_study_of(L), p, &sum, &stats, &error))
+            return cost_fail(L, &error);
+    lua_newtable(L);
+    glintL_set_number(L, "render", sum.render / (double)frames);
+    glintL_set_number(L, "tone", sum.tone / (double)frames);
+    glintL_set_number(L, "encode", sum.encode / (double)frames);
+    glintL_set_number(L, "wall", sum.wall / (double)frames);
+    glintL_set_number(L, "cpu", sum.cpu / (double)frames);
+    push_stats(L, &stats);
+    return 2;
 }
 
-glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *how, glint_image **out,
-                       glint_frame_stats *stats, glint_error *error)
+// ---- A picture ----
+
+// close(image): releases a picture.
+static int drop_image(lua_State *L)
 {
-    glint_plan *plan = NULL;
-    cost_draft *draft = malloc(sizeof *draft);
-    if (!draft)
-        return out_of_memory(error);
-    glint_status status = plan_case(study, c, how, draft, &plan, error);
-    // A renderer caches from the second frame on, so the work of the third frame is counted.
-    for (int frames = stats && draft->reuses ? 2 : 1; frames > 0 && !status; frames--) {
-        glint_image_release(*out);
-        *out = NULL;
-        status = prepare(study, draft, stats != NULL, error);
-        if (!status)
-            status = glint_render(study->run->renderer, plan, out, stats, error);
-    }
-    glint_plan_destroy(plan);
-    free(draft);
-    return status;
+    glint_image **image = luaL_checkudata(L, 1, IMAGE);
+    glint_image_release(*image);
+    *image = NULL;
+    return 0;
 }
+
+glint_image **cost_push_image(lua_State *L) { return cost_push_owner(L, sizeof(glint_image *), IMAGE, drop_image); }
+
+const glint_image *cost_image_at(lua_State *L, int index)
+{
+    glint_image **image = luaL_checkudata(L, index, IMAGE);
+    return *image;
+}
+
+// picture(plan, counts): renders a picture, outside the timed runs. Returns it and its statistics. counts: its work is
+// counted.
+static int picture(lua_State *L)
+{
+    cost_study *study = cost_study_of(L);
+    const planned *p = luaL_checkudata(L, 1, PLAN);
+    const bool counts = lua_toboolean(L, 2);
+    glint_image **image = cost_push_image(L);
+    glint_frame_stats stats = { 0 };
+    glint_error error;
+    // A renderer caches from the second frame on, so the work of the third frame is counted.
+    for (int frames = counts && p->setting.reuses ? 2 : 1; frames > 0; frames--) {
+        glint_image_release(*image);
+        *image = NULL;
+        if (prepare(study, &p->setting, counts, &error) ||
+            glint_render(study->run->renderer, p->plan, image, &stats, &error))
+            return cost_fail(L, &error);
+    }
+    push_stats(L, &stats);
+    return 2;
+}
+
+const luaL_Reg cost_measure_functions[] = {
+    { "plan", plan },       { "rays", rays },        { "cpu", cpu }, { "time", time_run },
+    { "picture", picture }, { "close", drop_image }, { NULL, NULL },
+};

@@ -96,21 +96,6 @@ void cost_scene_restore(cost_scene *scene)
     cost_scene_restore_meshes(scene);
 }
 
-glint_status cost_scene_set_material(cost_scene *scene, size_t i, const glint_material_desc *desc, glint_error *error)
-{
-    return glint_material_set(scene->materials[i], desc, error);
-}
-
-glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light_desc *desc, glint_error *error)
-{
-    return glint_light_set(scene->lights[i], desc, error);
-}
-
-glint_status cost_scene_set(cost_scene *scene, const glint_scene_desc *desc, glint_error *error)
-{
-    return glint_scene_set(scene->scene, desc, error);
-}
-
 static void set_three(double out[3], double value) { out[0] = out[1] = out[2] = value; }
 
 glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error)
