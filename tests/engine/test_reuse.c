@@ -96,6 +96,7 @@ static const struct {
     { "max", -0.5, 2 },         { "base", -2, 2 },         { "top", -2, 2 },         { "depth_cue_near", 0, 6 },
     { "depth_cue_far", 4, 15 }, { "indirect_samples", 1, 3 }, { "indirect_bounces", 0, 3 },
     { "ambient_occlusion_samples", 1, 3 }, { "ambient_occlusion_distance", 0.5, 6 },
+    { "reflection_samples", 0, 3 },
 };
 
 static void add_field(table *to, field f)
@@ -445,6 +446,20 @@ static glint_shape *new_combined(const glint_shape_desc *like)
     return outer;
 }
 
+/// Makes a material a metal, a rough mirror or rough glass.
+static void make_rough(glint_material_desc *m)
+{
+    m->model = draw(2) ? GLINT_MODEL_COOK_TORRANCE : m->model;
+    m->distribution = draw(2) ? GLINT_DISTRIBUTION_BECKMANN : GLINT_DISTRIBUTION_GGX;
+    m->has_roughness = true;
+    m->roughness = uniform(0, 1);
+    if (draw(2))
+        random_color(m->transmission);
+    else if (draw(2))
+        random_color(m->mirror);
+    m->fresnel = draw(2);
+}
+
 static void make_world(world *w)
 {
     memset(w, 0, sizeof *w);
@@ -456,13 +471,15 @@ static void make_world(world *w)
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = {
         .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 }, .indirect_samples = 2, .indirect_bounces = 2,
-        .ambient_occlusion_samples = 2, .ambient_occlusion_distance = 3
+        .ambient_occlusion_samples = 2, .ambient_occlusion_distance = 3, .reflection_samples = 2
     };
     assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
     for (int i = 0; i < SHAPES; i++) {
         glint_material_desc m = glint_material_desc_default();
         random_color(m.diffuse);
         random_color(m.specular);
+        if (draw(3) == 0)
+            make_rough(&m);
         assert_int_equal(glint_material_create(&m, &w->materials[i], NULL), GLINT_OK);
         glint_shape_desc d = glint_shape_desc_default(i == 0 ? GLINT_SHAPE_PLANE : GLINT_SHAPE_SPHERE);
         d.material = w->materials[i];

@@ -1,6 +1,8 @@
-/// Bytes that start like a PNG go to the PNG decoder and the PNG scanner, other bytes to the PFM reader. If both PNG
-/// readers accept the data, they report the same size, and all decoded pixel values are present. A PFM is unchanged
-/// after writing and reading it again.
+/// Bytes that start like a PNG go to the PNG decoder and the PNG scanner, those that start like a Radiance picture to
+/// its decoder, other bytes to the PFM reader. If both PNG readers accept the data, they report the same size, and all
+/// decoded pixel values are present. No value of a Radiance picture is negative or NaN. A PFM is unchanged after
+/// writing and reading it again.
+#include "engine/file/hdr.h"
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
 #include "tests/fuzz/fuzz.h"
@@ -73,10 +75,26 @@ static void try_pfm(const uint8_t *data, size_t size)
     free(bytes.data);
 }
 
+static void try_hdr(const uint8_t *data, size_t size)
+{
+    glint_pfm picture;
+    glint_error error;
+    const size_t most = 1 << 16;
+    if (glint_hdr_decode(data, size, most, &picture, &error))
+        return;
+    const size_t pixels = (size_t)picture.width * (size_t)picture.height;
+    FUZZ_CHECK(picture.channels == 3 && pixels > 0 && pixels <= most, "%d x %d", picture.width, picture.height);
+    for (size_t i = 0; i < 3 * pixels; i++)
+        FUZZ_CHECK(picture.values[i] >= 0, "value %zu: %g", i, (double)picture.values[i]);
+    free(picture.values);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     if (is_png(data, size))
         try_png(data, size);
+    else if (glint_is_hdr(data, size))
+        try_hdr(data, size);
     else
         try_pfm(data, size);
     return 0;

@@ -121,8 +121,13 @@ local function field_value(field, made)
   return value()
 end
 
+-- A metal, a rough mirror, rough glass, and none of these.
+local LOOKS = { {}, { model = "cook_torrance", roughness = 0.3, diffuse = 0 }, { mirror = 0.5, roughness = 0.2 },
+  { fresnel = true, transmission = 0.9, roughness = 0.4, distribution = "beckmann" } }
+
 local function make(name, made)
   local fields = { samples = nil }
+  for key, v in pairs(name == "material" and any(LOOKS) or {}) do fields[key] = v end
   for key, v in pairs(GOOD[name]) do fields[key] = v end
   for _ = 1, next_byte() % 4 do
     local field = any(FIELDS[name])
@@ -150,8 +155,9 @@ local SCENE = {
   depth_cue = function() return { far = number(), near = number(), color = value() } end,
   ambient_occlusion = function() return { samples = 1 + next_byte() % 3, distance = number() } end,
   background = value, ambient = value,
+  reflection_samples = function() return next_byte() % 4 end,
 }
-local SCENE_NAMES = { "indirect", "depth_cue", "ambient_occlusion", "background", "ambient" }
+local SCENE_NAMES = { "indirect", "depth_cue", "ambient_occlusion", "background", "ambient", "reflection_samples" }
 
 local function change_scene(scene)
   local field = any(SCENE_NAMES)
@@ -173,7 +179,7 @@ return function(input)
   bytes, at = input, 1
   local made, list = {}, {}
   local camera = make("camera", made) or glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }
-  local scene = glint.scene { camera = camera, ambient = 0.1 }
+  local scene = glint.scene { camera = camera, ambient = 0.1, reflection_samples = 2 }
   for _ = 1, 2 + next_byte() % 10 do
     local name = any(NAMES)
     local object = make(name, made)
