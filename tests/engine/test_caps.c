@@ -11,6 +11,7 @@
 
 #include "tests/engine/cases/floor_scene.h"
 #include "tests/engine/cases/random.h"
+#include "tests/engine/cases/sets.h"
 
 #define SIDE 80
 #define PI 3.14159265358979323846264338327950288L
@@ -311,7 +312,6 @@ static void other_shapes_have_rays(void **unused)
 /// ray replaces sixteen samples.
 static void hard_is_of_the_middle(void **unused)
 {
-    static const char *const sets[] = { "ref", "generic", "avx2", "avx512" };
     static const double corners[3][3] = { { 0, 6, 0 }, { 3, 6, 0 }, { 0, 6, 3 } };
     (void)unused;
     for (int kind = GLINT_LIGHT_DISK; kind <= GLINT_LIGHT_SPHERE; kind++) {
@@ -334,8 +334,8 @@ static void hard_is_of_the_middle(void **unused)
             add_ball(scene, (double[3]) { 0.5, 2, 0.5 }, 1, 0);
             image[way] = render(scene, NULL, 1, SIDE, GLINT_DOUBLE, &stats);
             assert_true(way == 0 || (stats.rays.shadow <= SIDE * SIDE && stats.rays.shadow > SIDE * SIDE / 2));
-            for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-                glint_image *same = render(scene, sets[i], 2, SIDE, GLINT_DOUBLE, NULL);
+            for (size_t i = 0; i < INSTRUCTION_SETS; i++) {
+                glint_image *same = render(scene, instruction_sets[i], 2, SIDE, GLINT_DOUBLE, NULL);
                 assert_true(!same || differing(same, image[way]) == 0);
                 glint_image_release(same);
             }

@@ -15,6 +15,7 @@
 #include "tests/engine/quad.h"
 #include "tests/engine/cases/closed_mesh.h"
 #include "tests/engine/cases/random.h"
+#include "tests/engine/cases/sets.h"
 
 static void random_vector(double v[3], double size)
 {
@@ -576,7 +577,6 @@ static int differing(const glint_image *a, const glint_image *b)
 
 static void same_on_every_set(uint64_t seeds)
 {
-    static const char *const sets[] = { "generic", "avx2", "avx512" };
     with_tori = true;
     for (uint64_t seed = 1; seed <= seeds; seed += case_step())
         for (int precision = 0; precision < 2; precision++) {
@@ -588,10 +588,10 @@ static void same_on_every_set(uint64_t seeds)
                 add(scene, whole);
             }
             glint_image *want = render(scene, "ref", 1, (glint_precision)precision);
-            for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-                glint_image *got = render(scene, sets[i], 1 + (int)i, (glint_precision)precision);
+            for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
+                glint_image *got = render(scene, instruction_sets[i], (int)i, (glint_precision)precision);
                 if (got && differing(want, got))
-                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, sets[i], precision,
+                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, instruction_sets[i], precision,
                              differing(want, got));
                 glint_image_release(got);
             }
@@ -636,7 +636,6 @@ static void many_small_wholes(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_BOX, GLINT_SHAPE_SPHERE,
                                               GLINT_SHAPE_CYLINDER };
-    static const char *const sets[] = { "generic", "avx2", "avx512" };
     (void)unused;
     for (uint64_t seed = 1; seed <= 60; seed += case_step()) {
         random_state = seed;
@@ -653,10 +652,10 @@ static void many_small_wholes(void **unused)
             add(scene, whole);
         }
         glint_image *want = render(scene, "ref", 1, GLINT_DOUBLE);
-        for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-            glint_image *got = render(scene, sets[i], 1, GLINT_DOUBLE);
+        for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
+            glint_image *got = render(scene, instruction_sets[i], 1, GLINT_DOUBLE);
             if (got && differing(want, got))
-                fail_msg("seed %d, %s: %d pixels", (int)seed, sets[i], differing(want, got));
+                fail_msg("seed %d, %s: %d pixels", (int)seed, instruction_sets[i], differing(want, got));
             glint_image_release(got);
         }
         glint_image_release(want);

@@ -13,6 +13,7 @@
 
 #include "tests/engine/cases/random.h"
 #include "tests/engine/cases/render_case.h"
+#include "tests/engine/cases/sets.h"
 
 enum { SIZE = 48, SEEDS = 48, FACES = 120 };
 
@@ -130,7 +131,6 @@ static glint_scene *clutter(uint64_t seed)
 /// adaptive sampling, or 0.
 static void same_as_reference(uint64_t seed, int samples, double adaptive)
 {
-    static const char *const sets[] = { "generic", "avx2", "avx512" };
     glint_scene *scene = clutter(seed);
     glint_render_desc d = glint_render_desc_default();
     d.width = d.height = SIZE;
@@ -140,11 +140,11 @@ static void same_as_reference(uint64_t seed, int samples, double adaptive)
     if (adaptive > 0)
         d.passes = 1u << GLINT_PASS_BEAUTY;
     glint_image *want = render_with(scene, "ref", &d);
-    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-        glint_image *got = render_with(scene, sets[i], &d);
+    for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
+        glint_image *got = render_with(scene, instruction_sets[i], &d);
         for (int pass = 0; pass < GLINT_PASS_COUNT && got; pass++)
             if (d.passes >> pass & 1 && differing(want, got, (glint_pass)pass, SIZE))
-                fail_msg("seed %d, %s, %d samples, pass %d: %d pixels", (int)seed, sets[i], samples, pass,
+                fail_msg("seed %d, %s, %d samples, pass %d: %d pixels", (int)seed, instruction_sets[i], samples, pass,
                          differing(want, got, (glint_pass)pass, SIZE));
         glint_image_release(got);
     }

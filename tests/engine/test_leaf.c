@@ -14,6 +14,7 @@
 #include "engine/glint.h"
 #include "tests/engine/cases/random.h"
 #include "tests/engine/cases/render_case.h"
+#include "tests/engine/cases/sets.h"
 
 enum { SIDE = 22, SIZE = 40, SEEDS = 36 };
 
@@ -162,19 +163,18 @@ static glint_image *render(const glint_scene *scene, const char *isa, glint_prec
 
 static void no_triangle_is_lost(void **unused)
 {
-    static const char *const sets[] = { "generic", "avx2", "avx512" };
     static const glint_pass passes[] = { GLINT_PASS_OBJECT_ID, GLINT_PASS_DEPTH, GLINT_PASS_BEAUTY };
     (void)unused;
     for (uint64_t seed = 1; seed <= SEEDS; seed += case_step()) {
         const glint_precision precision = seed % 3 ? GLINT_DOUBLE : GLINT_FLOAT;
         glint_scene *scene = sheets(seed, precision);
         glint_image *want = render(scene, "ref", precision);
-        for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-            glint_image *got = render(scene, sets[i], precision);
+        for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
+            glint_image *got = render(scene, instruction_sets[i], precision);
             for (int k = 0; k < 3 && got; k++)
                 if (differing(want, got, passes[k], SIZE))
-                    fail_msg("seed %d, %s, precision %d, pass %d: %d pixels", (int)seed, sets[i], (int)precision,
-                             (int)passes[k], differing(want, got, passes[k], SIZE));
+                    fail_msg("seed %d, %s, precision %d, pass %d: %d pixels", (int)seed, instruction_sets[i],
+                             (int)precision, (int)passes[k], differing(want, got, passes[k], SIZE));
             glint_image_release(got);
         }
         glint_image_release(want);

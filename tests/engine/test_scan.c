@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "tests/engine/cases/random.h"
+#include "tests/engine/cases/sets.h"
 
 enum { MOST = 1200 };
 
@@ -260,7 +261,6 @@ static void in_the_plane_of_the_eye(void **unused)
 
 static void same_on_every_instruction_set(void **unused)
 {
-    static const char *const sets[] = { "generic", "avx2", "avx512" };
     int hits = 0;
     (void)unused;
     for (uint64_t seed = 2001; seed <= 2030; seed += case_step()) {
@@ -268,11 +268,11 @@ static void same_on_every_instruction_set(void **unused)
         glint_render_desc raster = desc_of(GLINT_VISIBILITY_SCAN);
         raster.precision = seed % 2 ? GLINT_DOUBLE : GLINT_FLOAT;
         glint_image *want = render(scene, &raster, "ref");
-        for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-            glint_image *got = render(scene, &raster, sets[i]);
+        for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
+            glint_image *got = render(scene, &raster, instruction_sets[i]);
             const int wrong = got ? differing(want, got, &hits) : 0;
             if (wrong)
-                fail_msg("seed %d, %s: %d pixels", (int)seed, sets[i], wrong);
+                fail_msg("seed %d, %s: %d pixels", (int)seed, instruction_sets[i], wrong);
             glint_image_release(got);
         }
         glint_image_release(want);

@@ -18,6 +18,7 @@
 
 #include "tests/engine/quad.h"
 #include "tests/engine/cases/random.h"
+#include "tests/engine/cases/sets.h"
 
 static void random_vector(double v[3], double size)
 {
@@ -299,16 +300,15 @@ static glint_scene *random_scene(uint64_t seed)
 
 static void same_on_every_instruction_set(void **unused)
 {
-    static const char *const sets[] = { "generic", "avx2", "avx512" };
     (void)unused;
     for (uint64_t seed = 1; seed <= 40; seed++)
         for (int precision = 0; precision < 2; precision++) {
             glint_scene *scene = random_scene(seed);
             glint_image *want = render(scene, "ref", 1, 50, (glint_precision)precision);
-            for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-                glint_image *got = render(scene, sets[i], 1 + (int)i, 50, (glint_precision)precision);
+            for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
+                glint_image *got = render(scene, instruction_sets[i], (int)i, 50, (glint_precision)precision);
                 if (got && differing(want, got))
-                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, sets[i], precision,
+                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, instruction_sets[i], precision,
                              differing(want, got));
                 glint_image_release(got);
             }

@@ -1,6 +1,7 @@
 /// Pictures at the limits of valid input: scenes scaled by powers of two, numbers near the largest, the largest
 /// sizes, the most lights, the most spheres, and empty scenes;
 /// for each instruction set and several numbers of threads.
+#include "tests/engine/cases/sets.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/still.h"
 
@@ -83,7 +84,6 @@ static void check_scales(int stills)
 static void check_machines(int stills)
 {
     hard_test("N1", "instruction sets and threads");
-    static const char *const names[] = { "ref", "generic", "avx2", "avx512" };
     static const int threads[] = { 1, 2, 3, 7 };
     for (int i = 0; i < stills; i++) {
         const hard_still still = still_random(1, 100);
@@ -91,8 +91,8 @@ static void check_machines(int stills)
         for (int p = 0; p < 2; p++) {
             frame_desc desc = { 129, 67, p ? GLINT_FLOAT : GLINT_DOUBLE, COLOR_PASSES, 1, "ref" };
             glint_image *plain = frame(scene, &desc, NULL);
-            for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-                desc.isa = names[k];
+            for (size_t k = 0; k < INSTRUCTION_SETS; k++) {
+                desc.isa = instruction_sets[k];
                 desc.threads = threads[(k + (size_t)i) % 4];
                 if (!isa_usable(desc.isa))
                     continue;

@@ -2,6 +2,13 @@
 package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 
 local tally = { passed = 0, failed = 0 }
+tally.instruction_sets = { "ref", "generic", "avx2", "avx512" } -- a machine or a build may lack the last ones
+
+-- Appends { "GLINT_ISA=NAME", options } for each instruction set to a list of runs, and returns the list.
+function tally.with_sets(runs, options)
+  for _, name in ipairs(tally.instruction_sets) do runs[#runs + 1] = { "GLINT_ISA=" .. name, options } end
+  return runs
+end
 
 -- Counts a check. A failed check prints the formatted message and the line of the caller's caller.
 local function count(ok, format, ...)

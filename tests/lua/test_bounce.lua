@@ -413,7 +413,7 @@ for _, precision in ipairs { "double", "float" } do
   local options = "--precision " .. precision
   local want = picture("", options)
   check(want, "a picture in %s", precision)
-  for _, isa in ipairs { "ref", "generic", "avx2", "avx512" } do
+  for _, isa in ipairs(tally.instruction_sets) do
     local got, said = picture("GLINT_ISA=" .. isa, options)
     if not got and said:find "lacks" then
       print("skipped: " .. isa)

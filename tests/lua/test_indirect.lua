@@ -353,11 +353,9 @@ end
 for _, precision in ipairs { "double", "float" } do
   local usual = picture("", "-f 2-3 --precision " .. precision, 3)
   check(usual, "a picture")
-  for _, way in ipairs {
+  for _, way in ipairs(tally.with_sets({
     { "", "--threads 1 -f 3" }, { "", "--threads 7 --no-reuse" }, { "", "--shard 3/3" }, { "", "--reuse-memory 1M" },
-    { "GLINT_ISA=ref", "-f 3" }, { "GLINT_ISA=generic", "-f 3" },
-    { "GLINT_ISA=avx2", "-f 3" }, { "GLINT_ISA=avx512", "-f 3" },
-  } do
+  }, "-f 3")) do
     local other, said = picture(way[1], way[2] .. " --precision " .. precision, 3)
     local name = ("%s %s %s"):format(precision, way[1], way[2])
     if not other and said:find("this machine lacks", 1, true) then

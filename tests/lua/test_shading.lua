@@ -470,7 +470,7 @@ function tests.bits()
   for _, case in ipairs { { "1", "double" }, { "2", "float" } } do
     local script = BITS:gsub("SAMPLES", case[1]):gsub("PRECISION", case[2])
     local want
-    for _, isa in ipairs { "ref", "generic", "avx2", "avx512" } do
+    for _, isa in ipairs(tally.instruction_sets) do
       for _, threads in ipairs { 1, 3 } do
         local path = ("%s/%s-%d.png"):format(scratch, isa, threads)
         os.remove(path)
