@@ -1,7 +1,7 @@
 // Camera rays, and hits of coherent bundles of rays: rays from one eye, also through pixels at any position.
+#include "engine/effects/adaptive/kernel_pixels.h"
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/cast.h"
-#include "engine/stages/cast/pixels.h"
 
 static void R(cast_bundle)(const glint_cast_args *args)
 {

@@ -2,8 +2,8 @@
 // are few primitives, each is tested against every ray. If there are many, the rays traverse the index together like
 // the rays of a tile, over a screen of smaller cells. Each cell has a list of the groups with a ray in the cell.
 // Contract: stages.h.
-#ifndef GLINT_CAST_PIXELS_H
-#define GLINT_CAST_PIXELS_H
+#ifndef GLINT_ADAPTIVE_KERNEL_PIXELS_H
+#define GLINT_ADAPTIVE_KERNEL_PIXELS_H
 
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/cast.h"
