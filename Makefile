@@ -117,11 +117,14 @@ ifeq ($(SANITIZE)$(WASM),)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
 
-# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): no other
-# object changes. WITHOUT=MESH omits a part of the kernels, see engine/stages/contract/with.h.
+# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): only
+# left_out.c and the tables of kernels change. WITHOUT=MESH omits a part of the kernels, see
+# engine/stages/contract/with.h.
 EFFECTS  := $(filter-out adaptive pattern translucent,$(notdir $(patsubst %/,%,$(wildcard engine/effects/*/))))
 # bounce bounds the light along a ray, which indirect reads; rough follows its rays by indirect's paths.
 LEFT_OUT := $(sort $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough))))
+# The switches of with.h for the tables of kernels of a build without these effects.
+without_kernels = $(shell echo '$(1:%=-DGLINT_WITH_%=0)' | tr a-z A-Z)
 PARTS_OUT := $(filter-out all $(EFFECTS),$(WITHOUT))
 $(foreach part,$(PARTS_OUT),$(if $(shell grep -w 'define GLINT_WITH_$(part)' engine/stages/contract/with.h),,$(error WITHOUT=$(part): no such effect or part of the kernels)))
 DEFINES += $(PARTS_OUT:%=-DGLINT_WITH_%=0) $(if $(PARTS_OUT),-Wno-type-limits)
@@ -180,11 +183,12 @@ FLOAT        ?= yes
 NO_FLOAT     := $(if $(FLOAT),,-DGLINT_NO_FLOAT)
 STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 $(FLOAT:%=f32),$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
 ENGINE_SRC   := $(filter-out $(STAGE_SRC),$(ENGINE_SRC))
-# without EFFECTS: the other sources
-without       = $(filter-out $(foreach effect,$(1),engine/effects/$(effect)/%) $(if $(1),,engine/effects/left_out.c),$(ENGINE_SRC))
-ENGINE_OBJ   := $(STAGE_OBJ) $(patsubst %.c,$(BUILD)/%.o,$(call without,$(LEFT_OUT)))
+TABLE_OBJ    := $(KERNELS:%=$(BUILD)/engine/stages/simd/table.%.o)
+# without EFFECTS: the other objects
+without       = $(filter-out $(foreach effect,$(1),$(BUILD)/engine/effects/$(effect)/%) $(if $(1),,%/left_out.o),$(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o))
+ENGINE_OBJ   := $(call without,$(LEFT_OUT))
 CORE         := $(BUILD)/without/effects
-CORE_OBJ     := $(STAGE_OBJ) $(patsubst %.c,$(BUILD)/%.o,$(filter-out %/left_out.c,$(call without,$(EFFECTS)))) $(CORE)/left_out.o
+CORE_OBJ     := $(filter-out %/left_out.o $(TABLE_OBJ),$(call without,$(EFFECTS))) $(CORE)/left_out.o $(KERNELS:%=$(CORE)/table.%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
@@ -224,11 +228,12 @@ define stage_rule
 $$(BUILD)/engine/%.$(1).o: engine/%.c $$(BUILD)/flags | need
 	@mkdir -p $$(@D)
 	$$(call say,CC)
-	$$(Q)$$(CC) $$(COMPILE) $$(PLAIN) $$(LINES) $$(KERNEL_CFLAGS) $$(FLAGS_$(2)) -DGLINT_ISA=$(2) $(3) -MMD -MP -c $$< -o $$@
+	$$(Q)$$(CC) $$(COMPILE) $$(PLAIN) $$(LINES) $$(KERNEL_CFLAGS) $$(FLAGS_$(2)) $$(OWN) -DGLINT_ISA=$(2) $(3) -MMD -MP -c $$< -o $$@
 endef
 $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$(real),$(isa),-DGLINT_REAL=$(real)))) \
     $(eval $(call stage_rule,$(isa),$(isa),$(NO_FLOAT))))
-$(KERNELS:%=$(BUILD)/engine/stages/simd/table.%.o): $(BUILD)/kernels
+$(TABLE_OBJ): OWN = $(call without_kernels,$(LEFT_OUT))
+$(TABLE_OBJ): $(BUILD)/kernels $(BUILD)/effects
 # Some sources need flags of their own.
 UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
@@ -307,7 +312,7 @@ shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
 # When flags or libraries change, everything is compiled again.
 # When only KERNELS or FLOAT changes, only the tables of kernels (select.c, table.c) are. When other effects are left
-# out, the libraries are made again.
+# out, left_out.c and table.c are compiled and the libraries made again.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS) $(FLOAT)
 $(BUILD)/effects: SAID = $(LEFT_OUT)
@@ -318,7 +323,7 @@ $(BUILD)/flags $(BUILD)/kernels $(BUILD)/effects: FORCE
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(CORE)/left_out.d $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(wildcard $(CORE)/*.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # ---- Tests ----
 
@@ -340,11 +345,15 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) -D_GNU_SOURCE -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
-# The command without effects, of the same objects.
+# The command without effects, of the same objects, except the tables of kernels.
 $(CORE)/left_out.o: engine/effects/left_out.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(HARDEN) $(EFFECTS:%=-DGLINT_LACKS_%) -MMD -MP -c $< -o $@
+$(CORE)/table.%.o: engine/stages/simd/table.c $(BUILD)/flags $(BUILD)/kernels
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(PLAIN) -DGLINT_ISA=$* $(NO_FLOAT) $(call without_kernels,$(EFFECTS)) -MMD -MP -c $< -o $@
 $(CORE)/glint: $(BINDINGS_OBJ) $(CORE_OBJ)
 	$(call say,LINK)
 	@rm -f $(@D)/libglint.a

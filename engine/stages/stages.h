@@ -40,13 +40,13 @@
     ROW(true, void, cast_rays, (const glint_cast_args *args)) \
     ROW(true, void, surface, (const glint_surface_args *args)) \
     ROW(true, void, lit_surface, (const glint_surface_args *surface, const glint_light_args *light)) \
-    ROW(GLINT_WITH_FACET, void, view, (const glint_view_args *args)) \
+    ROW(GLINT_WITH_MICROFACET, void, view, (const glint_view_args *args)) \
     ROW(true, void, light, (const glint_light_args *args)) \
-    ROW(GLINT_WITH_FACET, void, facet, (const glint_facet_args *args)) \
+    ROW(GLINT_WITH_MICROFACET, void, facet, (const glint_facet_args *args)) \
     ROW(GLINT_WITH_SHADOW, void, occlude, (const glint_occlude_args *args)) \
     ROW(GLINT_WITH_AREA && GLINT_WITH_SHADOW, bool, soft_light, (const glint_soft_args *args)) \
     ROW(GLINT_WITH_BOUNCE, void, bounce, (const glint_bounce_args *args)) \
-    ROW(GLINT_WITH_VERTEX, void, vertex, (const glint_vertex_args *args)) \
+    ROW(GLINT_WITH_VERTEX_SHADING, void, vertex, (const glint_vertex_args *args)) \
     ROW(GLINT_WITH_INDIRECT, void, scatter, (const glint_scatter_args *args)) \
     ROW(GLINT_WITH_INDIRECT, void, spread, (const glint_spread_args *args)) \
     ROW(GLINT_WITH_RASTER, void, raster, (const glint_raster_args *args))

@@ -16,7 +16,7 @@ return {
     call = function(_, parts) parts.ball.mirror = 0.5 end },
   { name = "glass", part = "BOUNCE", stage = "bounce", rays = "refraction", functions = { "bounce", "glint_batch" },
     call = function(_, parts) parts.ball.transmission = 0.5 end },
-  { name = "microfacets", part = "FACET", stage = "facet", functions = { "facet", "^view_f" },
+  { name = "microfacets", part = "MICROFACET", stage = "facet", functions = { "facet", "^view_f" },
     call = function(_, parts)
       parts.ball.model = "cook_torrance"
       parts.ball.mirror = 0 -- lamps alone
@@ -52,7 +52,7 @@ return {
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
     end },
-  { name = "gouraud", part = "VERTEX", stage = "vertex", functions = { "vertex" },
+  { name = "gouraud", part = "VERTEX_SHADING", stage = "vertex", functions = { "vertex" },
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, shading = "gouraud",
         material = parts.ball })

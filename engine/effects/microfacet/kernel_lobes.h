@@ -7,7 +7,7 @@
 
 static inline bool has_facets(const glint_shade_material *material)
 {
-    return GLINT_WITH_FACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
+    return GLINT_WITH_MICROFACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
 }
 
 /// Returns Smith's masking for Beckmann's distribution, in Heitz' form of Walter's fit: x times Lambda at the cosine

@@ -1,7 +1,8 @@
 /// Compile-time switches for parts of the kernels. `make bench-effects` leaves out one part per build
 /// (-DGLINT_WITH_MESH=0) to check that the part costs nothing in scenes that do not need it. All other builds have
 /// all parts. Three places leave out a part: the table of kernels (simd/table.c), the code that distinguishes kinds,
-/// and the code that tests a name below.
+/// and the code that tests a name below. In a build without an effect (WITHOUT=raster), only the table leaves out the
+/// effect's kernels.
 #ifndef GLINT_WITH_H
 #define GLINT_WITH_H
 
@@ -17,8 +18,8 @@
 #ifndef GLINT_WITH_RASTER
 #define GLINT_WITH_RASTER 1
 #endif
-#ifndef GLINT_WITH_VERTEX
-#define GLINT_WITH_VERTEX 1
+#ifndef GLINT_WITH_VERTEX_SHADING
+#define GLINT_WITH_VERTEX_SHADING 1
 #endif
 #ifndef GLINT_WITH_BOUNCE
 #define GLINT_WITH_BOUNCE 1
@@ -26,8 +27,8 @@
 #ifndef GLINT_WITH_INDIRECT
 #define GLINT_WITH_INDIRECT 1
 #endif
-#ifndef GLINT_WITH_FACET
-#define GLINT_WITH_FACET 1
+#ifndef GLINT_WITH_MICROFACET
+#define GLINT_WITH_MICROFACET 1
 #endif
 #ifndef GLINT_WITH_BLINN
 #define GLINT_WITH_BLINN 1
