@@ -252,7 +252,7 @@ $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
 # Files embedded in the command, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
-CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/%,$(wildcard bindings/*/*.lua))))
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/% bindings/cost/%,$(wildcard bindings/*/*.lua))))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
@@ -261,7 +261,8 @@ $(BINDINGS_OBJ): | $(CARRIED)
 # Lua modules as C, for programs without files: { name, bytes, size } each. Comments become empty lines.
 $(BUILD)/bindings/web/library.h: $(sort $(wildcard scripts/lib/glint/*.lua))
 $(BUILD)/bindings/command/dialect.h: scripts/lib/gr.lua $(sort $(wildcard scripts/lib/gr/*.lua))
-$(BUILD)/bindings/web/library.h $(BUILD)/bindings/command/dialect.h:
+$(BUILD)/bindings/cost/modules.h: $(sort $(wildcard bindings/cost/*.lua))
+$(BUILD)/bindings/web/library.h $(BUILD)/bindings/command/dialect.h $(BUILD)/bindings/cost/modules.h:
 	@mkdir -p $(@D)
 	@{ for file in $^; do echo "static const unsigned char $$(basename $$file .lua)_lua[] = {"; \
 	       sed 's/^ *--.*//' $$file | od -An -v -tu1 | sed 's/[0-9][0-9]*/&,/g'; echo '};'; done; \
@@ -271,6 +272,7 @@ $(BUILD)/bindings/web/library.h $(BUILD)/bindings/command/dialect.h:
 	   echo '};'; } > $@
 $(BUILD)/bindings/web/web.o: | $(BUILD)/bindings/web/library.h
 $(BUILD)/bindings/command/dialect.o: | $(BUILD)/bindings/command/dialect.h
+$(BUILD)/bindings/cost/cost.o: | $(BUILD)/bindings/cost/modules.h
 
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)

@@ -18,36 +18,8 @@ static const char PAGE[] = {
 static const char STYLE[] = {
 #include "bindings/cost/plot.css.h"
 };
-static const unsigned char PLOT_LUA[] = {
-#include "bindings/cost/plot.lua.h"
-};
-static const unsigned char PAGE_LUA[] = {
-#include "bindings/cost/page.lua.h"
-};
-static const unsigned char LINES_LUA[] = {
-#include "bindings/cost/lines.lua.h"
-};
-static const unsigned char KNOBS_LUA[] = {
-#include "bindings/cost/knobs.lua.h"
-};
-static const unsigned char TIMING_LUA[] = {
-#include "bindings/cost/timing.lua.h"
-};
-static const unsigned char ERRORS_LUA[] = {
-#include "bindings/cost/errors.lua.h"
-};
-static const unsigned char FRONT_LUA[] = {
-#include "bindings/cost/front.lua.h"
-};
-static const unsigned char STUDY_LUA[] = {
-#include "bindings/cost/study.lua.h"
-};
-static const glintL_carried modules[] = {
-    { "@plot.lua", PLOT_LUA, sizeof PLOT_LUA },       { "@page.lua", PAGE_LUA, sizeof PAGE_LUA },
-    { "@lines.lua", LINES_LUA, sizeof LINES_LUA },    { "@knobs.lua", KNOBS_LUA, sizeof KNOBS_LUA },
-    { "@timing.lua", TIMING_LUA, sizeof TIMING_LUA }, { "@errors.lua", ERRORS_LUA, sizeof ERRORS_LUA },
-    { "@front.lua", FRONT_LUA, sizeof FRONT_LUA },    { "@study.lua", STUDY_LUA, sizeof STUDY_LUA },
-};
+typedef glintL_carried module;
+#include "bindings/cost/modules.h" // LIBRARY
 
 cost_study *cost_study_of(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
 
@@ -347,7 +319,7 @@ int cli_cost(cli_options *options, cli_output *output, glintL_run *run)
     cost_study study = { .output = output, .run = run, .options = options };
     char message[GLINTL_MESSAGE_SIZE];
     glintL_made_text made;
-    if (!glintL_make_text(modules, sizeof modules / sizeof *modules, "study", push_tools, &study, &made, message) &&
+    if (!glintL_make_text(LIBRARY, sizeof LIBRARY / sizeof *LIBRARY, "study", push_tools, &study, &made, message) &&
         !run->interrupted)
         glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", message);
     glintL_drop_text(&made);

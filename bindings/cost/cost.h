@@ -5,7 +5,7 @@
 ///   cost.c       the command; its options, the script and the output, for the modules
 ///   subject.c    the scene, for the knobs
 ///   setting.c    the values of a setting, read and applied to render options and scene
-///   scene.c      a scene whose materials and lights a setting edits, and their restoration
+///   scene.c      the state of a scene: its camera, materials and lights, edited and restored
 ///   shapes.c     the same for meshes: shading, and spheres with other numbers of segments
 ///   moments.c    the same at the times of an open shutter
 ///   measure.c    one setting in the engine: its plan, its picture and its time
@@ -39,28 +39,27 @@ typedef struct cost_copy {
     glint_scene *scene; ///< owned
 } cost_copy;
 
-/// The objects that a setting may edit, each once, with their descriptions from the script.
+/// The objects that a setting may edit, each once and borrowed, and owned copies (notes) of them as the script set them.
 typedef struct cost_scene {
     glint_scene *scene; ///< the scene to plan: the original or a copy
     glint_scene *original; ///< borrowed
+    glint_scene *note; ///< has the original's description, but no shapes
     cost_copy copies[COST_VALUES_MAX];
     int copy_count;
     cost_shaded *shaded; ///< meshes whose shading is currently edited
     size_t shaded_count;
-    glint_scene_desc desc; ///< description of the original, from the script
-    glint_material **materials;
-    glint_material_desc *material_descs;
+    glint_camera *camera, *camera_note;
+    glint_material **materials, **material_notes;
     size_t material_count;
-    glint_light **lights;
-    glint_light_desc *light_descs;
-    double (*corners)[3]; ///< vertices of all polygon lights' descriptions
+    glint_light **lights, **light_notes;
     size_t light_count;
 } cost_scene;
 
-bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene); ///< false: out of memory
+/// Notes the state of all objects. False: out of memory. Close it, on failure too.
+bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene);
 void cost_scene_close(cost_scene *scene);
-/// Restores all objects.
-void cost_scene_restore(cost_scene *scene);
+/// Restores all objects. It fails only for want of memory.
+glint_status cost_scene_restore(cost_scene *scene, glint_error *error);
 /// Makes every surface matt white without indirect light, so that exactly the points that light number `light` reaches
 /// are lit. The light has strength 1 and the others 0; if `light` is not the number of a light, all have strength 1.
 /// Shadow settings stay.
@@ -80,7 +79,7 @@ glint_status cost_scene_set_shading(cost_scene *scene, glint_shading shading, gl
 /// Sets the segments of every sphere of triangles; 0: exact spheres. Call it before setting the shading.
 glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_error *error);
 void cost_scene_restore_meshes(cost_scene *scene);
-void cost_scene_close_meshes(cost_scene *scene);
+void cost_scene_close_meshes(cost_scene *scene); ///< frees the copies
 
 // ---- moments.c ----
 
@@ -94,8 +93,9 @@ void cost_moments_close(cost_moments *moments); ///< NULL: no effect
 const char *cost_moments_lack(const cost_moments *moments);
 /// Writes the numbers of moments available, the camera's own first. Returns how many numbers there are.
 int cost_moments_counts(const cost_moments *moments, double out[COST_VALUES_MAX]);
-/// Sets the scene's objects to time k of `times`; with times and k 0, to the frame's own instant.
-glint_status cost_moments_enter(const cost_moments *moments, glint_scene *scene, int times, int k, glint_error *error);
+/// Sets the scene's objects to time k of `times`; with times and k 0, to the frame's own instant. `scene` receives their
+/// state then.
+glint_status cost_moments_enter(const cost_moments *moments, int times, int k, cost_scene **scene, glint_error *error);
 
 // ---- cost.c ----
 

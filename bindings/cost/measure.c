@@ -51,20 +51,15 @@ static glint_status out_of_memory(glint_error *error)
 static glint_status plan_time(const cost_study *study, const cost_setting *setting, int k, glint_plan **out,
                               glint_error *error)
 {
-    cost_scene scene;
+    cost_scene *scene;
     const glint_render_desc desc = glint_shutter_desc(&setting->render.desc);
-    glint_status status = cost_moments_enter(study->moments, study->scene.original, setting->shutter_times, k, error);
-    if (status)
-        return status;
-    if (cost_scene_open(&scene, study->scene.original)) {
-        status = cost_setting_apply(setting, &scene, error);
-        if (!status)
-            status = glint_plan_create(scene.scene, &desc, out, error);
-        cost_scene_restore(&scene);
-    } else {
-        status = out_of_memory(error);
-    }
-    cost_scene_close(&scene);
+    glint_status status = cost_moments_enter(study->moments, setting->shutter_times, k, &scene, error);
+    if (!status)
+        status = cost_setting_apply(setting, scene, error);
+    if (!status)
+        status = glint_plan_create(scene->scene, &desc, out, error);
+    cost_scene_restore(scene, NULL);
+    cost_scene_close_meshes(scene);
     return status;
 }
 
@@ -76,9 +71,8 @@ static glint_status plan_times(const cost_study *study, const cost_setting *sett
     glint_status status = times ? GLINT_OK : out_of_memory(error);
     for (int k = 0; k < count && !status; k++)
         status = plan_time(study, setting, k, &times[k], error);
-    glint_error ignored;
-    const glint_status back =
-        cost_moments_enter(study->moments, study->scene.original, 0, 0, status ? &ignored : error);
+    cost_scene *own;
+    const glint_status back = cost_moments_enter(study->moments, 0, 0, &own, status ? NULL : error);
     status = status ? status : back;
     for (int k = 0; times && status && k < count; k++)
         glint_plan_destroy(times[k]);
@@ -104,7 +98,7 @@ static glint_status plan_setting(cost_study *study, const cost_setting *setting,
         status = glint_plan_create_exposed(scene->scene, &setting->render.desc, times, (size_t)count, out, error);
     else if (!status)
         status = glint_plan_create(scene->scene, &setting->render.desc, out, error);
-    cost_scene_restore(scene);
+    cost_scene_restore(scene, NULL);
     return status;
 }
 

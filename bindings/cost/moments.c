@@ -9,17 +9,13 @@
 
 static const int COUNTS[] = { 1, 2, 4, 8, 16, 32 };
 
-// The recorded state of each object at one time: the description of each shape, and owned copies (notes) of the other
-// objects. The objects themselves are borrowed. Descriptions and notes retain the objects that they refer to.
+// The recorded state of each object at one time. The shapes are borrowed.
 typedef struct moment {
     int times, k;
+    cost_scene scene;
     glint_shape **shapes;
     glint_shape_desc *shape_descs; // their materials are retained
-    glint_light **lights, **light_notes;
-    glint_material **materials, **material_notes;
-    glint_camera *camera, *camera_note;
-    glint_scene *scene_note;
-    size_t shape_count, light_count, material_count;
+    size_t shape_count;
 } moment;
 
 struct cost_moments {
@@ -60,48 +56,12 @@ static bool note_shapes(moment *m, const glint_scene *scene)
     return true;
 }
 
-static bool note_lights(moment *m, const glint_scene *scene)
+static bool has_same_objects(const moment *m, const moment *n)
 {
-    bool good = true;
-    m->light_count = glint_scene_light_count(scene);
-    m->lights = calloc(m->light_count + 1, sizeof *m->lights);
-    m->light_notes = calloc(m->light_count + 1, sizeof *m->light_notes);
-    good = m->lights && m->light_notes;
-    for (size_t i = 0; i < m->light_count && good; i++) {
-        m->lights[i] = glint_scene_light_at(scene, i);
-        good = glint_light_create(glint_light_get(m->lights[i]), &m->light_notes[i], NULL) == GLINT_OK;
-    }
-    return good;
-}
-
-static bool note_materials(moment *m, glint_scene *scene)
-{
-    cost_scene all;
-    bool good = cost_scene_open(&all, scene);
-    m->material_notes = good ? calloc(all.material_count + 1, sizeof *m->material_notes) : NULL;
-    m->materials = good ? calloc(all.material_count + 1, sizeof *m->materials) : NULL;
-    good = m->materials && m->material_notes;
-    for (size_t i = 0; good && i < all.material_count; i++) {
-        m->materials[i] = all.materials[i];
-        good = glint_material_create(&all.material_descs[i], &m->material_notes[i], NULL) == GLINT_OK;
-        m->material_count += good;
-    }
-    cost_scene_close(&all);
-    return good;
-}
-
-static bool note_scene(moment *m, const glint_scene *scene)
-{
-    m->camera = glint_scene_get(scene)->camera;
-    return glint_camera_create(glint_camera_get(m->camera), &m->camera_note, NULL) == GLINT_OK &&
-           glint_scene_create(&m->scene_note, NULL) == GLINT_OK &&
-           glint_scene_set(m->scene_note, glint_scene_get(scene), NULL) == GLINT_OK;
-}
-
-static bool has_same_objects(const moment *a, const moment *b)
-{
-    return a->shape_count == b->shape_count && a->light_count == b->light_count && a->material_count == b->material_count &&
-           a->camera == b->camera && !memcmp(a->shapes, b->shapes, a->shape_count * sizeof *a->shapes) &&
+    const cost_scene *a = &m->scene, *b = &n->scene;
+    return m->shape_count == n->shape_count && a->light_count == b->light_count &&
+           a->material_count == b->material_count && a->camera == b->camera &&
+           !memcmp(m->shapes, n->shapes, m->shape_count * sizeof *m->shapes) &&
            !memcmp(a->lights, b->lights, a->light_count * sizeof *a->lights) &&
            !memcmp(a->materials, b->materials, a->material_count * sizeof *a->materials);
 }
@@ -118,7 +78,7 @@ static bool see(void *data, glint_scene *scene, int times, int k)
     moments->list = grown;
     moment *m = &grown[moments->count++];
     *m = (moment) { .times = times, .k = k };
-    if (!note_shapes(m, scene) || !note_lights(m, scene) || !note_materials(m, scene) || !note_scene(m, scene))
+    if (!note_shapes(m, scene) || !cost_scene_open(&m->scene, scene))
         return false;
     moments->notes += m->shape_count;
     moments->is_large = moments->notes > NOTES_MAX;
@@ -137,18 +97,9 @@ static void free_moment(moment *m)
 {
     for (size_t i = 0; i < m->shape_count; i++)
         glint_material_release(m->shape_descs[i].material);
-    for (size_t i = 0; m->light_notes && i < m->light_count; i++)
-        glint_light_release(m->light_notes[i]);
-    for (size_t i = 0; i < m->material_count; i++)
-        glint_material_release(m->material_notes[i]);
-    glint_camera_release(m->camera_note);
-    glint_scene_release(m->scene_note);
+    cost_scene_close(&m->scene);
     free(m->shapes);
     free(m->shape_descs);
-    free(m->lights);
-    free(m->light_notes);
-    free(m->materials);
-    free(m->material_notes);
 }
 
 void cost_moments_close(cost_moments *moments)
@@ -164,7 +115,9 @@ void cost_moments_close(cost_moments *moments)
 
 const char *cost_moments_lack(const cost_moments *moments)
 {
-    return moments->is_odd ? "the frame function creates new objects at each time" : moments->is_large ? "the scene is too large" : NULL;
+    return moments->is_odd     ? "the frame function creates new objects at each time"
+           : moments->is_large ? "the scene is too large"
+                               : NULL;
 }
 
 int cost_moments_counts(const cost_moments *moments, double out[COST_VALUES_MAX])
@@ -176,18 +129,13 @@ int cost_moments_counts(const cost_moments *moments, double out[COST_VALUES_MAX]
     return found;
 }
 
-glint_status cost_moments_enter(const cost_moments *moments, glint_scene *scene, int times, int k, glint_error *error)
+glint_status cost_moments_enter(const cost_moments *moments, int times, int k, cost_scene **scene, glint_error *error)
 {
-    const moment *m = moments->list;
+    moment *m = moments->list;
     while (m->times != times || m->k != k)
         m++;
-    glint_status status = glint_camera_set(m->camera, glint_camera_get(m->camera_note), error);
-    if (!status)
-        status = glint_scene_set(scene, glint_scene_get(m->scene_note), error);
-    for (size_t i = 0; i < m->material_count && !status; i++)
-        status = glint_material_set(m->materials[i], glint_material_get(m->material_notes[i]), error);
-    for (size_t i = 0; i < m->light_count && !status; i++)
-        status = glint_light_set(m->lights[i], glint_light_get(m->light_notes[i]), error);
+    *scene = &m->scene;
+    glint_status status = cost_scene_restore(&m->scene, error);
     for (size_t i = 0; i < m->shape_count && !status; i++)
         if (memcmp(glint_shape_get(m->shapes[i]), &m->shape_descs[i], sizeof *m->shape_descs))
             status = glint_shape_set(m->shapes[i], &m->shape_descs[i], error);

@@ -1,4 +1,4 @@
-// The scene of a study: its materials and lights, edited for one plan and restored.
+// The state of a scene: its camera, materials and lights, edited for one plan and restored.
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,77 +23,77 @@ static size_t gather_materials(const glint_shape *shape, glint_material **out)
 }
 
 // Lists each material once, because shapes share them.
-static void list_materials(cost_scene *scene, const glint_scene *engine_scene)
+static void list_materials(cost_scene *scene)
 {
     size_t count = 0;
-    for (size_t i = 0; i < glint_scene_shape_count(engine_scene); i++)
-        count += gather_materials(glint_scene_shape_at(engine_scene, i), scene->materials + count);
+    for (size_t i = 0; i < glint_scene_shape_count(scene->original); i++)
+        count += gather_materials(glint_scene_shape_at(scene->original, i), scene->materials + count);
     qsort(scene->materials, count, sizeof *scene->materials, by_address);
-    for (size_t i = 0; i < count; i++) {
-        if (i > 0 && scene->materials[i] == scene->materials[scene->material_count - 1])
-            continue;
-        scene->material_descs[scene->material_count] = *glint_material_get(scene->materials[i]);
-        scene->materials[scene->material_count++] = scene->materials[i];
-    }
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || scene->materials[i] != scene->materials[scene->material_count - 1])
+            scene->materials[scene->material_count++] = scene->materials[i];
 }
 
-// Lists the lights. Their descriptions get copies of the corners, because setting a light frees its own.
-static void list_lights(cost_scene *scene, const glint_scene *engine_scene)
+static bool note_objects(cost_scene *scene)
 {
-    double(*corners)[3] = scene->corners;
-    for (size_t i = 0; i < glint_scene_light_count(engine_scene); i++) {
-        glint_light_desc *desc = &scene->light_descs[i];
-        scene->lights[i] = glint_scene_light_at(engine_scene, i);
-        *desc = *glint_light_get(scene->lights[i]);
-        if (desc->vertex_count == 0)
-            continue;
-        memcpy(corners, desc->vertices, desc->vertex_count * sizeof *corners);
-        desc->vertices = (const double(*)[3])corners;
-        corners += desc->vertex_count;
-    }
-    scene->light_count = glint_scene_light_count(engine_scene);
+    bool good = glint_camera_create(glint_camera_get(scene->camera), &scene->camera_note, NULL) == GLINT_OK &&
+                glint_scene_create(&scene->note, NULL) == GLINT_OK &&
+                glint_scene_set(scene->note, glint_scene_get(scene->original), NULL) == GLINT_OK;
+    for (size_t i = 0; i < scene->material_count && good; i++)
+        good =
+            glint_material_create(glint_material_get(scene->materials[i]), &scene->material_notes[i], NULL) == GLINT_OK;
+    for (size_t i = 0; i < scene->light_count && good; i++)
+        good = glint_light_create(glint_light_get(scene->lights[i]), &scene->light_notes[i], NULL) == GLINT_OK;
+    return good;
 }
 
 bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
 {
-    size_t shapes = glint_scene_shape_count(engine_scene), lights = glint_scene_light_count(engine_scene), most = 1;
-    size_t corners = 1;
-    for (size_t i = 0; i < shapes; i++)
+    const size_t lights = glint_scene_light_count(engine_scene);
+    size_t most = 1;
+    for (size_t i = 0; i < glint_scene_shape_count(engine_scene); i++)
         most += gather_materials(glint_scene_shape_at(engine_scene, i), NULL);
-    for (size_t i = 0; i < lights; i++)
-        corners += glint_light_get(glint_scene_light_at(engine_scene, i))->vertex_count;
-    *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene, .desc = *glint_scene_get(engine_scene) };
+    *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene };
+    scene->camera = glint_scene_get(engine_scene)->camera;
     scene->materials = calloc(most, sizeof *scene->materials);
-    scene->material_descs = calloc(most, sizeof *scene->material_descs);
+    scene->material_notes = calloc(most, sizeof *scene->material_notes);
     scene->lights = calloc(lights + 1, sizeof *scene->lights);
-    scene->light_descs = calloc(lights + 1, sizeof *scene->light_descs);
-    scene->corners = calloc(corners, sizeof *scene->corners);
-    if (!scene->materials || !scene->material_descs || !scene->lights || !scene->light_descs || !scene->corners)
+    scene->light_notes = calloc(lights + 1, sizeof *scene->light_notes);
+    if (!scene->materials || !scene->material_notes || !scene->lights || !scene->light_notes)
         return false;
-    list_materials(scene, engine_scene);
-    list_lights(scene, engine_scene);
-    return true;
+    list_materials(scene);
+    for (scene->light_count = 0; scene->light_count < lights; scene->light_count++)
+        scene->lights[scene->light_count] = glint_scene_light_at(engine_scene, scene->light_count);
+    return note_objects(scene);
 }
 
 void cost_scene_close(cost_scene *scene)
 {
+    for (size_t i = 0; i < scene->material_count; i++)
+        glint_material_release(scene->material_notes[i]);
+    for (size_t i = 0; i < scene->light_count; i++)
+        glint_light_release(scene->light_notes[i]);
+    glint_camera_release(scene->camera_note);
+    glint_scene_release(scene->note);
     free(scene->materials);
-    free(scene->material_descs);
+    free(scene->material_notes);
     free(scene->lights);
-    free(scene->light_descs);
-    free(scene->corners);
+    free(scene->light_notes);
     cost_scene_close_meshes(scene);
     memset(scene, 0, sizeof *scene);
 }
 
-void cost_scene_restore(cost_scene *scene)
+glint_status cost_scene_restore(cost_scene *scene, glint_error *error)
 {
-    glint_scene_set(scene->scene, &scene->desc, NULL);
-    for (size_t i = 0; i < scene->material_count; i++) // cannot fail: they were valid before
-        glint_material_set(scene->materials[i], &scene->material_descs[i], NULL);
-    for (size_t i = 0; i < scene->light_count; i++)
-        glint_light_set(scene->lights[i], &scene->light_descs[i], NULL);
+    glint_status status = glint_camera_set(scene->camera, glint_camera_get(scene->camera_note), error);
+    if (!status)
+        status = glint_scene_set(scene->scene, glint_scene_get(scene->note), error);
+    for (size_t i = 0; i < scene->material_count && !status; i++)
+        status = glint_material_set(scene->materials[i], glint_material_get(scene->material_notes[i]), error);
+    for (size_t i = 0; i < scene->light_count && !status; i++)
+        status = glint_light_set(scene->lights[i], glint_light_get(scene->light_notes[i]), error);
     cost_scene_restore_meshes(scene);
+    return status;
 }
 
 static void set_three(double out[3], double value) { out[0] = out[1] = out[2] = value; }

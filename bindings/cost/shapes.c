@@ -197,7 +197,8 @@ glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_e
 
 void cost_scene_close_meshes(cost_scene *scene)
 {
-    for (int i = 0; i < scene->copy_count; i++)
-        glint_scene_release(scene->copies[i].scene);
+    while (scene->copy_count > 0)
+        glint_scene_release(scene->copies[--scene->copy_count].scene);
     free(scene->shaded);
+    scene->shaded = NULL;
 }

@@ -7,7 +7,7 @@ static bool takes_caps(const cost_scene *scene)
     bool takes = true;
     for (size_t i = 0; i < scene->material_count; i++)
         for (int c = 0; c < 3; c++)
-            takes = takes && scene->material_descs[i].transmission[c] == 0;
+            takes = takes && glint_material_get(scene->materials[i])->transmission[c] == 0;
     for (size_t i = 0; i < glint_scene_shape_count(scene->scene); i++)
         takes = takes && glint_shape_get(glint_scene_shape_at(scene->scene, i))->kind <= GLINT_SHAPE_SPHERES;
     return takes;
@@ -18,7 +18,7 @@ static bool has_bounce(const cost_scene *scene)
 {
     bool has = false;
     for (size_t i = 0; i < scene->material_count; i++) {
-        const glint_material_desc *m = &scene->material_descs[i];
+        const glint_material_desc *m = glint_material_get(scene->materials[i]);
         for (int c = 0; c < 3; c++)
             has = has || m->transmission[c] > 0 || (m->has_mirror ? m->mirror[c] > 0 : m->fresnel);
     }
@@ -48,7 +48,7 @@ static void add_lights(lua_State *L, const cost_scene *scene)
     };
     lua_newtable(L);
     for (size_t i = 0; i < scene->light_count; i++) {
-        const glint_light_desc *light = &scene->light_descs[i];
+        const glint_light_desc *light = glint_light_get(scene->lights[i]);
         lua_newtable(L);
         glintL_set_flag(L, "is_soft", cost_is_soft(light));
         glintL_set_flag(L, "is_sphere", light->kind == GLINT_LIGHT_SPHERE);
@@ -85,7 +85,7 @@ void cost_add_subject(lua_State *L, const cost_study *study)
 {
     static const char *const FIELDS[] = { "width",     "height",    "samples", "seed",  "adaptive",
                                           "precision", "max_depth", "bits",    "encode" };
-    const glint_scene_desc *desc = &study->scene.desc;
+    const glint_scene_desc *desc = glint_scene_get(study->scene.original);
     for (size_t i = 0; i < sizeof FIELDS / sizeof *FIELDS; i++) {
         glintL_render_push(L, glintL_render_find(FIELDS[i]), study->own);
         lua_setfield(L, -2, FIELDS[i]);
