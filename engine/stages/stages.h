@@ -25,6 +25,7 @@
 #include "engine/effects/microfacet/contract.h"
 #include "engine/effects/pattern/contract.h"
 #include "engine/effects/raster/contract.h"
+#include "engine/effects/rough/contract.h"
 #include "engine/effects/vertex_shading/contract.h"
 #include "engine/stages/contract/film.h"
 #include "engine/stages/contract/hits.h"
@@ -48,7 +49,7 @@
     ROW(GLINT_WITH_BOUNCE, void, bounce, (const glint_bounce_args *args)) \
     ROW(GLINT_WITH_VERTEX_SHADING, void, vertex, (const glint_vertex_args *args)) \
     ROW(GLINT_WITH_INDIRECT, void, scatter, (const glint_scatter_args *args)) \
-    ROW(GLINT_WITH_INDIRECT, void, spread, (const glint_spread_args *args)) \
+    ROW(GLINT_WITH_ROUGH, void, spread, (const glint_spread_args *args)) \
     ROW(GLINT_WITH_RASTER, void, raster, (const glint_raster_args *args))
 #define GLINT_SAMPLE_KERNELS(ROW) \
     ROW(GLINT_WITH_PROGRAM, void, program, (const glint_program_args *args)) \

@@ -21,7 +21,7 @@ return {
       parts.ball.model = "cook_torrance"
       parts.ball.mirror = 0 -- lamps alone
     end },
-  { name = "rough", part = "INDIRECT", stage = "rough", rays = "mirror", functions = { "rough", "spread" },
+  { name = "rough", part = "ROUGH", stage = "rough", rays = "mirror", functions = { "rough", "spread" },
     call = function(_, parts)
       parts.ball.mirror = 0.5
       parts.ball.roughness = 0.3

@@ -1,48 +1,11 @@
-/// The contract of the stages that follow the lights, up to the picture: scatter, spread, shade, resolve, tone. Begin
-/// with stages.h.
+/// The contract of the stages that follow the lights, up to the picture: shade, resolve, tone. Begin with
+/// stages.h.
 #ifndef GLINT_CONTRACT_FILM_H
 #define GLINT_CONTRACT_FILM_H
 
 #include "engine/stages/contract/light.h"
 
-// ---- scatter: cosine-distributed directions around normals ----
-
-typedef struct glint_scatter_args {
-    uint32_t group_count;
-    const uint16_t *wanted; ///< one bit per lane
-    const void *normal[3]; ///< real, unit
-    const uint32_t *number, *order, *digits[2]; ///< for each ray: the number of a point of a sequence, and the seeds
-        ///< of that sequence
-    uint32_t further; ///< offset that is added to the `number` of every ray
-    void *direction[3]; ///< out, real, of length 1 up to rounding and 2e-9
-} glint_scatter_args;
-// Groups without a wanted lane are not written. In other groups, lanes that are not wanted are undefined. The point
-// (u, v) of the unit square is computed by glint_sequence_flipped, in double. Equal areas of the square get equal
-// shares of the light of a uniform sky. The arithmetic: ref/scatter.h: the square is mapped to a disk, and the disk
-// is projected up onto the hemisphere, which gives a cosine distribution, in the orthonormal basis of T. Duff et al.,
-// JCGT 6(1), 2017.
-
-// ---- spread: rays that the facets of GGX's distribution reflect ----
-
 #define GLINT_WEIGHT_MAX 1e150 ///< of a ray: products with a surface's light are finite below it
-
-typedef struct glint_spread_args {
-    uint32_t group_count;
-    const uint16_t *wanted; ///< one bit per lane
-    const void *normal[3], *ray[3]; ///< real, unit; ray: the direction of the arriving ray
-    const void *alpha; ///< real, above 0: width of the distribution
-    const void *disk[2]; ///< real: a point of the unit disk
-    void *direction[3]; ///< out, real, of length 1 up to rounding; may be the arrays of `disk`
-    double *grazing; ///< out: (1 - cosine)^5, where `cosine` is that of the angle between ray and facet
-    double *weight; ///< out: G2 / G1, the probability that no other facet is in the way; 0 below the surface
-    const double *head_on[3]; ///< weight of a ray that is reflected straight back, before the factor `weight`
-    const double *added[3]; ///< what `grazing` = 1 adds to it
-    double *ray_weight[3]; ///< out: weight * (head_on + added * grazing), at most GLINT_WEIGHT_MAX; NULL: not asked
-} glint_spread_args;
-// Groups without a wanted lane are not written. In other groups, lanes that are not wanted are undefined. The
-// arithmetic: ref/spread.h: a point of the disk becomes a cap of the hemisphere of directions from which the facet is
-// seen (J. Dupuy and A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023), in the basis of
-// scatter; G2 is height-correlated.
 
 // ---- shade: the terms of each sample ----
 

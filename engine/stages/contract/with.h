@@ -27,6 +27,9 @@
 #ifndef GLINT_WITH_INDIRECT
 #define GLINT_WITH_INDIRECT 1
 #endif
+#ifndef GLINT_WITH_ROUGH
+#define GLINT_WITH_ROUGH 1
+#endif
 #ifndef GLINT_WITH_MICROFACET
 #define GLINT_WITH_MICROFACET 1
 #endif

@@ -208,11 +208,11 @@ static double square_root_double(double x) { return sqrt(x); }
 #define NAME(x) x##_float
 #include "engine/stages/ref/real.h"
 #include "engine/effects/bounce/ref.h"
+#include "engine/effects/indirect/ref.h"
 #include "engine/effects/microfacet/ref.h"
 #include "engine/effects/raster/ref.h"
+#include "engine/effects/rough/ref.h"
 #include "engine/effects/vertex_shading/ref.h"
-#include "engine/stages/ref/scatter.h"
-#include "engine/stages/ref/spread.h"
 #include "engine/stages/ref/soft.h"
 #undef REAL
 #undef ROUNDER
@@ -223,11 +223,11 @@ static double square_root_double(double x) { return sqrt(x); }
 #define NAME(x) x##_double
 #include "engine/stages/ref/real.h"
 #include "engine/effects/bounce/ref.h"
+#include "engine/effects/indirect/ref.h"
 #include "engine/effects/microfacet/ref.h"
 #include "engine/effects/raster/ref.h"
+#include "engine/effects/rough/ref.h"
 #include "engine/effects/vertex_shading/ref.h"
-#include "engine/stages/ref/scatter.h"
-#include "engine/stages/ref/spread.h"
 #include "engine/stages/ref/soft.h"
 #undef REAL
 #undef ROUNDER

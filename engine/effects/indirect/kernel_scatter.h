@@ -1,10 +1,10 @@
-// scatter: cosine-distributed directions around normals. Contract: stages.h.
-#ifndef GLINT_SHADE_SCATTER_H
-#define GLINT_SHADE_SCATTER_H
+// scatter: cosine-distributed directions around normals. Contract: contract.h.
+#ifndef GLINT_INDIRECT_KERNEL_SCATTER_H
+#define GLINT_INDIRECT_KERNEL_SCATTER_H
 
+#include "engine/effects/indirect/kernel_sequence.h"
 #include "engine/stages/cast/camera.h"
 #include "engine/stages/cast/triangle.h"
-#include "engine/stages/shade/sequence.h"
 #include "engine/stages/simd/real.h"
 
 /// Computes two tangents to a normal (T. Duff et al., JCGT 6(1), 2017).

@@ -1,8 +1,8 @@
 // sequence: points of scrambled Sobol sequences, as plain loops over arrays, which compilers vectorise. Each product
 // depends on the previous product, so two vectors are interleaved. glint_sequence_flipped in base/sequence.c defines
 // the arithmetic.
-#ifndef GLINT_SHADE_SEQUENCE_H
-#define GLINT_SHADE_SEQUENCE_H
+#ifndef GLINT_INDIRECT_KERNEL_SEQUENCE_H
+#define GLINT_INDIRECT_KERNEL_SEQUENCE_H
 
 #include "engine/stages/simd/elementary.h"
 

@@ -1,8 +1,5 @@
-// spread: rays that the facets of GGX's distribution reflect. Contract: stages.h.
-#ifndef GLINT_SHADE_SPREAD_H
-#define GLINT_SHADE_SPREAD_H
-
-#include "engine/stages/shade/scatter.h"
+// spread: rays that the facets of GGX's distribution reflect. Contract: contract.h.
+#include "engine/effects/indirect/kernel_scatter.h"
 
 /// Computes the normal of the facet at a point of the disk, for the eye at e along the basis.
 static inline void R(facet_of)(const vr e[3], vr alpha, vr x, vr y, vr facet[3])
@@ -75,4 +72,6 @@ static void R(spread)(const glint_spread_args *args)
             R(spread_group)(args, (size_t)g * GLINT_GROUP);
 }
 
+#if GLINT_WITH_ROUGH
+KERNEL(spread, glint_spread_args)
 #endif
