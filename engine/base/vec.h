@@ -63,4 +63,17 @@ static inline void vec_normalize(double out[3], const double v[3])
         out[c] /= length;
 }
 
+/// Computes two tangents to a unit vector, as the stages scatter and spread do (T. Duff et al., "Building an Orthonormal
+/// Basis, Revisited", JCGT 6(1), 2017).
+static inline void vec_tangents(const double n[3], double tangent[3], double bitangent[3])
+{
+    const double g = n[2] >= 0 ? 1 : -1, p = -1 / (g + n[2]), q = n[0] * n[1] * p;
+    tangent[0] = 1 + g * (n[0] * n[0] * p);
+    tangent[1] = g * q;
+    tangent[2] = 0 - g * n[0];
+    bitangent[0] = q;
+    bitangent[1] = g + n[1] * n[1] * p;
+    bitangent[2] = 0 - n[1];
+}
+
 #endif

@@ -19,6 +19,14 @@ static void NAME(turn)(REAL quarters, REAL *sine, REAL *cosine)
     *sine = nearest == 1 ? c : nearest == 2 ? 0 - s : nearest == 3 ? 0 - c : s;
 }
 
+/// Computes two tangents to a normal (T. Duff et al., JCGT 6(1), 2017).
+static void NAME(tangents_of)(NAME(vec3) n, NAME(vec3) *tangent, NAME(vec3) *bitangent)
+{
+    REAL g = n.z >= 0 ? 1 : -1, p = -1 / (g + n.z), q = (n.x * n.y) * p;
+    *tangent = NAME(vec)(1 + g * ((n.x * n.x) * p), g * q, 0 - g * n.x);
+    *bitangent = NAME(vec)(q, g + (n.y * n.y) * p, 0 - n.y);
+}
+
 static void NAME(scatter_sample)(const glint_scatter_args *args, uint32_t i)
 {
     double square[2];
@@ -28,10 +36,8 @@ static void NAME(scatter_sample)(const glint_scatter_args *args, uint32_t i)
     NAME(vec3) n = NAME(load)(args->normal, i);
     NAME(turn)(4 * v, &sine, &cosine);
     REAL r = NAME(square_root)(u), h = NAME(square_root)(NAME(max)(1 - u, 0)), x = r * cosine, y = r * sine;
-    REAL g = n.z >= 0 ? 1 : -1;
-    REAL p = -1 / (g + n.z), q = (n.x * n.y) * p;
-    NAME(vec3) tangent = NAME(vec)(1 + g * ((n.x * n.x) * p), g * q, 0 - g * n.x);
-    NAME(vec3) bitangent = NAME(vec)(q, g + (n.y * n.y) * p, 0 - n.y);
+    NAME(vec3) tangent, bitangent;
+    NAME(tangents_of)(n, &tangent, &bitangent);
     ((REAL *)args->direction[0])[i] = (x * tangent.x + y * bitangent.x) + h * n.x;
     ((REAL *)args->direction[1])[i] = (x * tangent.y + y * bitangent.y) + h * n.y;
     ((REAL *)args->direction[2])[i] = (x * tangent.z + y * bitangent.z) + h * n.z;

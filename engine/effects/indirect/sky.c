@@ -16,10 +16,10 @@
 static void draw_cosine(const double n[3], const double u[2], double d[3])
 {
     const double r = sqrt(u[0]), h = sqrt(1 - u[0]), x = r * glint_cos(2 * PI * u[1]), y = r * glint_sin(2 * PI * u[1]);
-    const double g = n[2] >= 0 ? 1 : -1, p = -1 / (g + n[2]), q = n[0] * n[1] * p;
-    d[0] = (x * (1 + g * (n[0] * n[0] * p)) + y * q) + h * n[0];
-    d[1] = (x * (g * q) + y * (g + n[1] * n[1] * p)) + h * n[1];
-    d[2] = (x * (0 - g * n[0]) + y * (0 - n[1])) + h * n[2];
+    double tangent[3], bitangent[3];
+    vec_tangents(n, tangent, bitangent);
+    for (int c = 0; c < 3; c++)
+        d[c] = (x * tangent[c] + y * bitangent[c]) + h * n[c];
 }
 
 /// Draws a direction. The first coordinate chooses the density and is stretched again, so that both halves stay

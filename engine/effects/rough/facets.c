@@ -38,16 +38,6 @@ static void load_normal(const glint_tile *tile, const glint_plan *plan, uint32_t
         out[c] = glint_real_at(bumped ? tile->surface.normal[c] : tile->unbumped[c], plan->desc.precision, i);
 }
 
-/// Completes the axes (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017).
-static void find_tangents(double axis[3][3])
-{
-    const double *n = axis[2], g = n[2] >= 0 ? 1 : -1, p = -1 / (g + n[2]), q = n[0] * n[1] * p;
-    const double tangent[3] = { 1 + g * n[0] * n[0] * p, g * q, -g * n[0] };
-    const double other[3] = { q, g + n[1] * n[1] * p, -n[1] };
-    vec_copy(axis[0], tangent);
-    vec_copy(axis[1], other);
-}
-
 /// Finds the normal of sample i on the ray's side, with its bump, and the unit vector against the ray.
 static void find_view(const glint_tile *tile, const glint_plan *plan, uint32_t i, double normal[3], double to_eye[3])
 {
@@ -64,7 +54,7 @@ static view look(const glint_tile *tile, const glint_plan *plan, uint32_t i, con
     view v = { .alpha = m->alpha, .beckmann = m->beckmann };
     double to_eye[3];
     find_view(tile, plan, i, v.axis[2], to_eye);
-    find_tangents(v.axis);
+    vec_tangents(v.axis[2], v.axis[0], v.axis[1]);
     for (int k = 0; k < 3; k++)
         v.to_eye[k] = vec_dot(v.axis[k], to_eye);
     v.to_eye[2] = fmin(fmax(v.to_eye[2], 0), 1);

@@ -14,10 +14,9 @@ static NAME(vec3) NAME(drawn_facet)(NAME(vec3) e, REAL alpha, REAL x, REAL y)
 static void NAME(spread_sample)(const glint_spread_args *args, uint32_t i)
 {
     NAME(vec3) n = NAME(load)(args->normal, i), v = NAME(load)(args->ray, i);
-    REAL alpha = ((const REAL *)args->alpha)[i], aa = alpha * alpha, g = n.z >= 0 ? 1 : -1;
-    REAL p = -1 / (g + n.z), q = (n.x * n.y) * p;
-    NAME(vec3) tangent = NAME(vec)(1 + g * ((n.x * n.x) * p), g * q, 0 - g * n.x);
-    NAME(vec3) bitangent = NAME(vec)(q, g + (n.y * n.y) * p, 0 - n.y);
+    REAL alpha = ((const REAL *)args->alpha)[i], aa = alpha * alpha;
+    NAME(vec3) tangent, bitangent;
+    NAME(tangents_of)(n, &tangent, &bitangent);
     REAL up = NAME(min)(NAME(max)(0 - NAME(dot)(n, v), 0), 1);
     NAME(vec3) e = NAME(vec)(0 - NAME(dot)(tangent, v), 0 - NAME(dot)(bitangent, v), up);
     NAME(vec3) facet = NAME(drawn_facet)(e, alpha, ((const REAL *)args->disk[0])[i], ((const REAL *)args->disk[1])[i]);
