@@ -258,6 +258,72 @@ function tests.openexr_pictures()
   end
 end
 
+-- Numbers that half stores exactly, with its bits.
+local HALVES <const> = { { 0, 0 }, { 0.25, 0x3400 }, { 1, 0x3c00 }, { 1.5, 0x3e00 }, { 100, 0x5640 }, { 2 ^ -24, 1 } }
+
+-- An uncompressed OpenEXR file of 5 x 4 pixels whose window begins at 3, -2. The number of pixel x, y in channel c is row (c + x + 5 y) of HALVES.
+-- tile: size of the tiles; nil: scan lines.
+local function openexr(channels, half, tile)
+  local function attribute(key, kind, bytes) return ("<zzs4"):pack(key, kind, bytes) end
+  local list, chunks, rest, last = {}, {}, {}, 0
+  for c, channel in ipairs(channels) do list[c] = ("<zi4i4i4i4"):pack(channel, half and 1 or 2, 0, 1, 1) end
+  local box = ("<i4i4i4i4"):pack(3, -2, 7, 1)
+  local head = ("<I4I4"):pack(20000630, tile and 0x202 or 2) .. attribute("channels", "chlist", table.concat(list) .. "\0")
+    .. attribute("compression", "compression", "\0") .. attribute("dataWindow", "box2i", box) .. attribute("displayWindow", "box2i", box)
+    .. attribute("lineOrder", "lineOrder", "\0") .. attribute("pixelAspectRatio", "float", ("<f"):pack(1))
+    .. attribute("screenWindowCenter", "v2f", ("<ff"):pack(0, 0)) .. attribute("screenWindowWidth", "float", ("<f"):pack(1))
+    .. (tile and attribute("tiles", "tiledesc", ("<I4I4B"):pack(tile, tile, 0)) or "") .. "\0"
+  local wide, high = tile or 5, tile or 1
+  for y0 = 0, 3, high do
+    for x0 = 0, 4, wide do
+      local data = {}
+      for y = y0, math.min(y0 + high, 4) - 1 do
+        for c = 0, #channels - 1 do
+          for x = x0, math.min(x0 + wide, 5) - 1 do
+            local number = HALVES[(c + x + 5 * y) % #HALVES + 1]
+            data[#data + 1] = half and ("<I2"):pack(number[2]) or ("<f"):pack(number[1])
+          end
+        end
+      end
+      local at = tile and ("<i4i4i4i4"):pack(x0 // tile, y0 // tile, 0, 0) or ("<i4"):pack(y0 - 2)
+      chunks[#chunks + 1] = at .. ("<s4"):pack(table.concat(data))
+    end
+  end
+  for k, chunk in ipairs(chunks) do
+    rest[k] = ("<I8"):pack(#head + 8 * #chunks + last)
+    last = last + #chunk
+  end
+  return head .. table.concat(rest) .. table.concat(chunks)
+end
+
+-- Scan lines and tiles, float and half, layers and luminance. Channels are in alphabetical order, as in every file.
+function tests.kinds_of_openexr()
+  local good, message = pcall(glint.texture, { file = write(".exr", openexr({ "B", "G", "R" })) })
+  if not good and tostring(message):find("libopenexr", 1, true) then return end
+  local kinds = { -- the channels that red, green and blue come from
+    { { "B", "G", "R" }, 2, 1, 0 }, { { "A", "B", "G", "R", "Z" }, 3, 2, 1 }, { { "Y" }, 0, 0, 0 },
+    { { "B", "G", "R", "diffuse.B", "diffuse.G", "diffuse.R" }, 2, 1, 0 }, -- the picture, not its layer
+    { { "a.B", "a.G", "a.R", "b.B", "b.G", "b.R" }, 2, 1, 0 }, -- the first of two layers
+    { { "a.X", "a.Y", "a.Z", "b.c.B", "b.c.G", "b.c.R" }, 5, 4, 3 },
+  }
+  for _, kind in ipairs(kinds) do
+    for way = 0, 7 do
+      local tile = ({ [0] = nil, 2, 5, 64 })[way // 2]
+      local texture = glint.texture { file = write(".exr", openexr(kind[1], way % 2 == 1, tile)) }
+      for i = 0, 19 do
+        local x, y = i % 5, i // 5
+        local color = texture:evaluate { uv = { (x + 0.5) / 5, 1 - (y + 0.5) / 4 } }
+        for c, value in ipairs { color.x, color.y, color.z } do
+          near(value, HALVES[(kind[c + 1] + i) % #HALVES + 1][1], 1e-6, ("channel %d of %s, way %d"):format(c, table.concat(kind[1], " "), way))
+        end
+      end
+    end
+  end
+  for _, wrong in ipairs { { "R" }, { "B", "G" }, { "a.B", "b.G", "c.R" }, { "AB", "AG", "AR" }, { "Z" } } do
+    tally.raises("the channels R, G and B, or Y, of every pixel expected", glint.texture, { file = write(".exr", openexr(wrong)) })
+  end
+end
+
 -- A black sky with one texel of 10^4: the tent of the texel is two texels wide.
 function tests.one_texel_lights_a_plane()
   local w, h, x, y = 64, 32, 20, 9
