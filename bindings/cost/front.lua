@@ -32,6 +32,7 @@ end
 
 -- Adds the combinations that are likely to be on the front, judging from the effect of each knob on its own.
 function the.add_combinations(study)
+  if not study.own.film then return end
   local list = { { choice = {}, knobs = 0, index = 0, ms = study.own.guess_cpu_ms, error = study.own.film.rmse } }
   for _, knob in ipairs(the.knobs) do
     if not knob.is_alone then extend(study, knob, list) end

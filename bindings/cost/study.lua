@@ -77,7 +77,7 @@ local function list_cases(study)
   end
   if not found then
     the.tools.refuse(format("--knobs: expected a knob that changes this scene (%s), got '%s'",
-      table.concat(changing, ", "), study.knobs:sub(1, 200)))
+      table.concat(changing, ", "), (study.knobs or ""):sub(1, 200)))
   end
   study.own = add_case(study, {})
   for _, knob in ipairs(the.knobs) do add_knob(study, knob) end
@@ -88,7 +88,7 @@ end
 
 -- ---- Measuring ----
 
--- Guesses the times of the cases after `first` from their number of rays, before their first run.
+-- Guesses the times of the cases from index `first` on from their number of rays, before their first run.
 local function guess(study, first)
   local function rays_of(case)
     local plan <close> = the.tools.plan(case.choice, "beauty")

@@ -505,6 +505,10 @@ check(#once > 0 and once_advice.left_out[1]:find "leaves no time for more", "a f
 for _, row in ipairs(once) do
   check(row.default == (row.knob ~= "reuse") and row.partial and row.runs == 1 and row.counters.primary == 640 * 480 * 4, "%s: the first frame alone", row.knob)
 end
+check(run(("%s --size 640x480 --json --budget %g"):format(film, 0.01 * once[1].ms.median)) == 0, "ten frames: %s", read "err")
+local some, some_advice = rows_of "ten frames"
+check(#some > 0 and some_advice.reference == null and some_advice.left_out[1]:find "^every error", "ten frames allow no reference: %s",
+  some_advice.left_out[1])
 local alone = io.popen("ls -A " .. work .. "/once"):read "a"
 check(alone == "index.html\n", "without an error there is a page and no plot: %s", alone)
 
