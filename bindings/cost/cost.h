@@ -136,7 +136,7 @@ typedef struct cost_setting {
     size_t light;
 } cost_setting;
 
-extern const char *const cost_shadow_words[], *const cost_shading_words[]; ///< end with NULL
+extern const char *const cost_shading_words[]; ///< by glint_shading; ends with NULL
 extern const struct cost_scene_number {
     const char *name;
     size_t at; ///< offset in glint_scene_desc

@@ -5,7 +5,7 @@
 #include "bindings/cost/cost.h"
 
 enum { SHADOWS_OFF, SHADOWS_HARD, SHADOWS_SOFT, SHADOWS_CAPS };
-const char *const cost_shadow_words[] = { "off", "hard", "soft", "caps", NULL };
+static const char *const SHADOWS[] = { "off", "hard", "soft", "caps", NULL };
 const char *const cost_shading_words[] = { [GLINT_SHADING_FACETED] = "faceted",
                                            [GLINT_SHADING_PHONG] = "phong",
                                            [GLINT_SHADING_FLAT] = "flat",
@@ -78,7 +78,7 @@ void cost_setting_read(lua_State *L, const cost_study *study, cost_setting *out)
     read_render(L, &out->render);
     out->shutter_times = (int)number_at(L, "shutter_times", counts[0]);
     out->reuses = word_at(L, "reuse", SWITCH) == 1;
-    out->shadows = word_at(L, "shadows", cost_shadow_words);
+    out->shadows = word_at(L, "shadows", SHADOWS);
     out->model = word_at(L, "model", MODELS);
     out->shading = word_at(L, "shading", cost_shading_words);
     out->light_samples = number_at(L, "light_samples", -1);
