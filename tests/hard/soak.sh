@@ -8,7 +8,7 @@ half=$(awk "BEGIN { printf \"%.0f\", $2 / 2 }")
 # Casts half of the rays. Its output ends with the totals.
 soak() {
     bad=0
-    for program in hard_fuzz hard_frames hard_pictures hard_solids hard_torus hard_combined hard_leaving hard_glass hard_area hard_meshes hard_seams hard_shading hard_facets hard_limits; do
+    for program in hard_fuzz hard_frames hard_pictures hard_solids hard_torus hard_combined hard_leaving hard_glass hard_area hard_meshes hard_seams hard_shading hard_facets hard_rough hard_limits; do
         "$folder/$program" --table --rays "$half" --seed "$1" || bad=1
     done
     BUILD=${folder%/tests/hard} lua5.4 tests/hard/hard_faces.lua --table --rays "$(awk "BEGIN { printf \"%.0f\", $half / 500 }")" --seed "$1" || bad=1
