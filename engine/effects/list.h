@@ -1,5 +1,8 @@
 /// The stages of a frame, in the order in which a frame runs them: STAGE(ID, name) for each one, declared as
 /// glint_stage_NAME. Internal. A new stage is a folder and a row here.
+///
+/// A stage's key contains the keys of the stages before it, and the key of a picture is that of `refine`. So stages that
+/// change light stand before `refine`; those that scale it stand after `depth_cue`, which adds up the light anew.
 #ifndef GLINT_EFFECTS_LIST_H
 #define GLINT_EFFECTS_LIST_H
 

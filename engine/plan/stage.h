@@ -69,7 +69,7 @@ typedef enum glint_stage_time {
     GLINT_AT_REST, ///< after all lights
     GLINT_AT_MISSED, ///< the secondary rays that leave the scene are known; not if the walk has all of them
     GLINT_AT_SENT, ///< the light of secondary rays is added to the tile that they left
-    GLINT_AT_SUMMED, ///< the sums of the sample are complete
+    GLINT_AT_SUMMED, ///< all light of the sample has been added to the sums, which hold the samples so far
     GLINT_AT_DONE, ///< after the last sample, before the mean is taken
     GLINT_AT_SIGN, ///< keys of cached results are set
     GLINT_AT_STORE, ///< the pixels go to the picture
@@ -94,7 +94,8 @@ typedef struct glint_stage {
     uint64_t reads; ///< inputs of the stage, a set made by GLINT_READS and GLINT_READS_OWN; the results of the stages
         ///< before it are implied
     glint_key (*own)(const struct glint_plan *plan,
-                     glint_key key); ///< continues a key with data that only this stage reads; NULL: none
+                     glint_key key); ///< continues a key with data that only this stage reads; NULL: none. Not NULL if
+        ///< `reads` has GLINT_READS_OWN of the stage, or with `scales`
     glint_key (*pass_key)(const struct glint_plan *plan, int pass,
                           glint_key key); ///< continues a key with what only this pass depends on; NULL: nothing
     /// Renders frames of a plan with several times in place of glint_render_instant. NULL: the stage renders no whole

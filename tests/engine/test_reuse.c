@@ -928,10 +928,21 @@ static void hits_under_a_moved_light_are_kept(void **unused)
     assert_true(reused_share(&stats, "cast") > 0);
 }
 
+/// The key of a picture is that of `refine`, and `depth_cue` adds up the light anew.
+static void stages_that_scale_light_stand_between_depth_cue_and_refine(void **unused)
+{
+    (void)unused;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        const glint_stage *stage = glint_stage_table[id];
+        assert_true(!stage->scales || (id >= GLINT_STAGE_DEPTH_CUE && id < GLINT_STAGE_REFINE && stage->own));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_name_every_field),
+        cmocka_unit_test(stages_that_scale_light_stand_between_depth_cue_and_refine),
         cmocka_unit_test(a_lamp_that_reaches_nothing),
         cmocka_unit_test(frames_that_come_back),
         cmocka_unit_test(a_highlight_that_a_tile_does_not_show),
