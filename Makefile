@@ -173,7 +173,8 @@ BEST     = $(if $(call native_has,__AVX512BW__ __AVX512DQ__ __AVX512VL__),avx512
 ifeq ($(KERNELS),native)
   override KERNELS := $(BEST)
 endif
-# The stages and the kernels of effects are compiled for each instruction set. The geometry and light stages are also compiled for each precision.
+# The stages and the kernels of effects are compiled for each instruction set, those of geometry and light also for each
+# precision.
 STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/% $(wildcard engine/effects/*/kernel*.c),$(ENGINE_SRC)))
 STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% %/shade/samples.c \
                   %/adaptive/kernel.c %/derivative/kernel.c %/pattern/kernel.c %/kernel_sky.c,$(STAGE_SRC))

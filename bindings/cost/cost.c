@@ -54,7 +54,7 @@ static int out_of_memory(lua_State *L)
 // refuse(message): fails the run, because an option is wrong.
 static int refuse(lua_State *L) { return refuse_option(L, "", luaL_checkstring(L, 1)); }
 
-// nearer(name, near, candidate): returns the one that is nearer to the misspelt name, or nil.
+// nearer(name, near, candidate): returns the one closer to the misspelt name; nil if neither is close.
 static int nearer(lua_State *L)
 {
     lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));

@@ -8,27 +8,29 @@
 
 // ---- Decisions ----
 
-// decisions(image): returns the number of each pixel's object, 0 for the background, and whether each pixel is lit, as
-// two arrays.
+// decisions(image, objects): returns whether each pixel is lit and, if asked for, the number of its object, 0 for the
+// background, as two arrays.
 static int decisions(lua_State *L)
 {
     const glint_image *image = cost_image_at(L, 1);
     const int width = glint_image_width(image), height = glint_image_height(image);
-    float *objects = lua_newuserdatauv(L, (size_t)width * (size_t)height * sizeof *objects, 0);
-    uint8_t *lit = lua_newuserdatauv(L, (size_t)width * (size_t)height, 0);
+    const size_t pixels = (size_t)width * (size_t)height;
+    uint8_t *lit = lua_newuserdatauv(L, pixels, 0);
+    float *objects = lua_toboolean(L, 2) ? lua_newuserdatauv(L, pixels * sizeof *objects, 0) : NULL;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             float v[3] = { 0 };
             glint_image_pixel(image, GLINT_PASS_OBJECT_ID, x, y, v, NULL);
-            *objects++ = v[0];
+            if (objects)
+                *objects++ = v[0];
             glint_image_pixel(image, GLINT_PASS_DIFFUSE, x, y, v, NULL);
             *lit++ = v[0] > LIT || v[1] > LIT || v[2] > LIT;
         }
-    return 2;
+    return objects ? 2 : 1;
 }
 
-// differ(a, b): counts the pixels whose objects differ, and of the others those whose lights do. Each list has the
-// array of objects, then an array for each light.
+// differ(a, b): counts the pixels with different objects and, among the rest, those that different lights reach. Each
+// list has the array of objects, then an array for each light.
 static int differ(lua_State *L)
 {
     const lua_Integer planes = luaL_len(L, 1);

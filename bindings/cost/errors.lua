@@ -13,7 +13,7 @@ local function decide(study, choice, is_exact)
   for light = 1, count <= LIGHTS_MAX and math.max(count, 1) or 1 do
     local plan <close> = the.tools.plan(choice, "decisions", 1, nil, is_exact, count <= LIGHTS_MAX and light or nil)
     local image <close> = the.tools.picture(plan)
-    local objects, lit = the.tools.decisions(image)
+    local lit, objects = the.tools.decisions(image, light == 1)
     planes[1], planes[light + 1] = planes[1] or objects, lit
   end
   return planes
@@ -110,14 +110,14 @@ end
 
 local function find_errors(study, case, image)
   local film = the.tools.errors(image, 0)
-  case.file = case.needs_file and the.tools.errors(image, case.choice.bits or study.bits) or nil
+  local file = case.needs_file and the.tools.errors(image, case.choice.bits or study.bits) or nil
   case.estimate = estimate(study, case, image)
   case.wrong_object, case.wrong_shadow = the.tools.differ(decide(study, case.choice), study.decisions)
   if study.report then
     local difference <close> = the.tools.difference(image)
     case.picture, case.difference = the.tools.png(image), the.tools.png(difference)
   end
-  case.film = film
+  case.film, case.file = film, file
 end
 
 -- Runs a case once; measures its work, errors and decisions; makes the pictures for the report.

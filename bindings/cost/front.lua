@@ -7,7 +7,7 @@ local RESOLVED <const> = 10 -- times the reference's own error: larger errors ar
 local CANDIDATES_MAX <const>, COMBINATIONS_MAX <const> = 4096, 8
 local CLEARLY <const> = 0.95 -- a knob is combined with others if it has less than this share of the time or error
 local CHEAPER <const> = 0.8 -- a step that loses accuracy is advised if it takes less than this share of the time
-local STEEP <const> = 0.8 -- of the steps worth at least this share of the best one, the fastest is advised
+local STEEP <const> = 0.8 -- among steps worth at least this share of the best one, the fastest is advised
 
 -- ---- Combinations of good settings ----
 

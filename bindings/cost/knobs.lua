@@ -48,7 +48,7 @@ local function list_shadows(study)
   return values
 end
 
--- In the row of the largest of the lights' own samples each light keeps its own.
+-- The own value is the largest number of samples of any light. In its row, every light keeps its own number.
 local function list_light_samples(study)
   local most = 0
   for _, light in ipairs(study.lights) do

@@ -47,6 +47,13 @@ static glint_status out_of_memory(glint_error *error)
     return GLINT_ERR_NOMEM;
 }
 
+// Restores the scene. Returns `status`, or the restoration's if that is GLINT_OK.
+static glint_status restore(cost_scene *scene, glint_status status, glint_error *error)
+{
+    const glint_status restored = cost_scene_restore(scene, status ? NULL : error);
+    return status ? status : restored;
+}
+
 // Plans the scene at one time of an open shutter.
 static glint_status plan_time(const cost_study *study, const cost_setting *setting, int k, glint_plan **out,
                               glint_error *error)
@@ -58,9 +65,16 @@ static glint_status plan_time(const cost_study *study, const cost_setting *setti
         status = cost_setting_apply(setting, scene, error);
     if (!status)
         status = glint_plan_create(scene->scene, &desc, out, error);
-    cost_scene_restore(scene, NULL);
+    status = restore(scene, status, error);
     cost_scene_close_meshes(scene);
     return status;
+}
+
+static void drop_times(glint_plan **times, int count)
+{
+    for (int k = 0; times && k < count; k++)
+        glint_plan_destroy(times[k]);
+    free(times);
 }
 
 // Plans all times. Afterwards the scene is at the frame's own instant. On success the caller owns the list.
@@ -74,10 +88,8 @@ static glint_status plan_times(const cost_study *study, const cost_setting *sett
     cost_scene *own;
     const glint_status back = cost_moments_enter(study->moments, 0, 0, &own, status ? NULL : error);
     status = status ? status : back;
-    for (int k = 0; times && status && k < count; k++)
-        glint_plan_destroy(times[k]);
     if (status)
-        free(times);
+        drop_times(times, count);
     else
         *out = times;
     return status;
@@ -94,12 +106,13 @@ static glint_status plan_setting(cost_study *study, const cost_setting *setting,
         status = cost_setting_apply(setting, scene, error);
     if (!status && setting->is_painted)
         status = cost_scene_show_light(scene, setting->light, error);
-    if (!status && times)
+    if (status)
+        drop_times(times, count);
+    else if (times)
         status = glint_plan_create_exposed(scene->scene, &setting->render.desc, times, (size_t)count, out, error);
-    else if (!status)
+    else
         status = glint_plan_create(scene->scene, &setting->render.desc, out, error);
-    cost_scene_restore(scene, NULL);
-    return status;
+    return restore(scene, status, error);
 }
 
 static int drop_plan(lua_State *L)

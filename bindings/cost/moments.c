@@ -19,7 +19,7 @@ typedef struct moment {
 } moment;
 
 struct cost_moments {
-    moment *list; // the last is the frame's own instant, if `closed`
+    moment *list; // the last is the frame's own instant
     size_t count, notes;
     bool is_odd; // the objects differ between the times
     bool is_large;

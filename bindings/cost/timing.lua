@@ -120,7 +120,7 @@ local function run_round(study, cases, remaining_ms)
   end
 end
 
--- Returns the timed cases and the time of a round. may_repeat: only these.
+-- Returns the timed cases and the time of a round. may_repeat: only the cases for which it returns true.
 local function list_cases(study, may_repeat)
   local cases, ms = {}, 0.0
   for _, case in ipairs(study.cases) do

@@ -146,7 +146,7 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
 void glintL_render_point(glintL_render *render);
 /// Adds a light pass. False: too long, or too many.
 bool glintL_add_light_pass(glintL_render *to, const char *name);
-/// Copies name number `index` of a list, from 0. False: the list is shorter, or NULL.
+/// Copies the name at `index`, from 0. Returns false if the list is shorter, or NULL.
 bool glintL_light_pass_at(const char *list, size_t index, char name[GLINT_NAME_SIZE]);
 /// Fails with the nearest name if the scene lacks a light whose pass the frame requests.
 glint_status glintL_check_light_passes(const glint_scene *scene, const glintL_render *render, glint_error *error);
@@ -213,7 +213,7 @@ typedef struct glintL_record {
 typedef struct glintL_file {
     glint_pass pass;
     char key[33]; ///< "": the format stores no key
-    char whole[33]; ///< key of the frame that this is a region of; "": no region
+    char whole[33]; ///< key of the whole frame if the file shows a region of it, otherwise ""
     char path[GLINTL_PATH_SIZE];
 } glintL_file;
 
@@ -468,11 +468,11 @@ glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner,
 
 // ---- steps.c ----
 
-/// Returns the samples of the picture to show after the one with `samples`; 0: none is shown yet. `own_samples` are those
-/// of the full picture. `full_ms` is the time that the full picture takes; 0: unknown.
+/// Returns how many samples a pixel the next picture takes. samples: of the picture now shown, 0 if there is none.
+/// own_samples: of the full picture. full_ms: the time to render the full picture, 0 if unknown.
 double glintL_next_samples(double samples, double own_samples, double full_ms);
-/// Begins pictures with at most `samples` samples of a pixel, or their partners. They have their own renderer, which
-/// reuses nothing, so that the run's renderer keeps the data of full pictures. 0: ends them.
+/// Limits the next pictures, or their partners, to `samples` samples a pixel; 0 removes the limit. Limited pictures have
+/// their own renderer, which reuses nothing, so that the run's renderer keeps the data of full pictures.
 void glintL_run_limit(glintL_run *run, double samples, bool is_partner);
 
 // ---- brightness.c ----

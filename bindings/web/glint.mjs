@@ -103,6 +103,7 @@ class Host {
 
   // A new worker opens the script first, also if it replaces a worker that was stopped.
   #begin() {
+    while (this.#queue[0]?.signal?.aborted) this.#queue.shift()
     const asked = this.#queue[0]
     if (!asked) return this.#worker?.unref?.()
     if (!this.#worker) {
@@ -157,7 +158,7 @@ class Host {
     if (place === 0) setTimeout(() => this.#drop(asked), Math.max(0, this.#openingMs - (performance.now() - this.#since)))
   }
   #drop(asked) {
-    if (this.#queue[0] !== asked) return
+    if (this.#queue[0] !== asked || this.#isReopening) return // an opened worker skips it
     this.#queue.shift()
     this.#stop()
     this.#begin()

@@ -381,8 +381,8 @@ static bool render(int64_t frame)
     return !job.script.has_jobs || cli_run_jobs(&job.script, run);
 }
 
-/// Returns the samples of a pixel of a frame that may be shown in steps. 0: it may not, because it is a call of
-/// scene:render, and the whole script would run for each step.
+/// Returns the frame's samples a pixel. Returns 0 if it cannot be shown in steps: for a call of scene:render, the whole
+/// script would run for each step.
 EMSCRIPTEN_KEEPALIVE double web_own_samples(double frame)
 {
     glintL_render render;
@@ -392,8 +392,8 @@ EMSCRIPTEN_KEEPALIVE double web_own_samples(double frame)
     return render.desc.samples;
 }
 
-/// Returns the limit of samples of the step after a picture with `samples`; 0: none is shown yet. The full picture has no
-/// limit: 0.
+/// Returns the limit of samples of the next step; 0 if the next picture is the full one. samples: of the picture now
+/// shown, 0 if there is none.
 EMSCRIPTEN_KEEPALIVE double web_next_samples(double frame, double samples)
 {
     glintL_render render;
@@ -423,7 +423,8 @@ EMSCRIPTEN_KEEPALIVE bool web_render(double frame, bool keeps, double samples)
     return job.image || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "frame %g was not rendered", frame);
 }
 
-/// Returns the estimated error of the last picture, which has float32 numbers and is of this frame; < 0: it failed.
+/// Estimates the error of the last picture, which must show this frame and have float32 values. Returns a negative number
+/// on failure.
 EMSCRIPTEN_KEEPALIVE double web_estimate(double frame)
 {
     job.error = -1;

@@ -111,14 +111,15 @@ function namePasses(passes) {
 
 const keyOf = ({ set, frame, options }) => JSON.stringify([set, frame, options, call("web_samples")])
 
-// Renders a frame; as the step after a picture with `after` samples if that is given.
+// Renders a frame. With `after`, renders the step that follows a picture of that many samples.
 function render(message) {
   const { set, frame, options, passes, view, after } = message
   run(set)
   choose(options)
   const own = after === undefined ? 0 : call("web_own_samples", frame), isStep = own > 1
+  shown = undefined
   check(call("web_render", frame, isStep || "passes" in options, isStep ? call("web_next_samples", frame, after) : 0))
-  shown = isStep && view === "beauty" ? keyOf(message) : undefined
+  if (isStep && view === "beauty") shown = keyOf(message)
   const width = call("web_image_width"), height = call("web_image_height")
   const at = check(call("web_rgba", view))
   const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)

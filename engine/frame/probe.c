@@ -81,6 +81,15 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
     }
 }
 
+/// Chooses kernels for single rays and materials: the reference's in a build that leaves some of them out.
+static glint_status choose_stages(const glint_stages **out, glint_error *error)
+{
+    const glint_status status = glint_choose_isa(NULL, out, error);
+    if (!status && !((*out)->geometry[GLINT_DOUBLE].bounce && (*out)->geometry[GLINT_DOUBLE].facet))
+        *out = &glint_stages_ref;
+    return status;
+}
+
 glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
                               glint_hit *out, glint_error *error)
 {
@@ -94,7 +103,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     if (!status)
         status = glint_check_direction("direction", direction, error);
     if (!status)
-        status = glint_choose_isa(NULL, &stages, error);
+        status = choose_stages(&stages, error);
     if (status)
         return status;
     double scaled[3];
@@ -273,7 +282,7 @@ glint_status glint_scene_path(const glint_scene *scene, const double origin[3], 
     if (!t || !g)
         status = glint_fail_nomem(error);
     else
-        status = glint_choose_isa(NULL, &t->stages, error);
+        status = choose_stages(&t->stages, error);
     if (!status)
         status = glint_geometry_of(scene, &geometry, error);
     if (!status)
@@ -381,7 +390,7 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
     if (!status)
         status = glint_check_direction("to_eye", to_eye, error);
     if (!status)
-        status = glint_choose_isa(NULL, &stages, error);
+        status = choose_stages(&stages, error);
     if (status)
         return status;
     double n[3], l[3], v[3];

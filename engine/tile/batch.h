@@ -68,7 +68,7 @@ void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TIL
 /// Computes the sums of the batch's tile: the light that surfaces, and in a whole batch the background, send back
 /// along the rays.
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any);
-/// Computes these sums only for the hits that are shaded per sample.
+/// Computes the sums of glint_batch_light only for the hits that are shaded per sample.
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// Returns the light of all local terms of sample `i`, in channel `c`.
 static inline double glint_batch_local_light(const glint_batch *batch, int c, uint32_t i)

@@ -61,6 +61,17 @@ return glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 }
 LUA
 exits 2 "derivative" scene.lua --size 32x24 -o a.png --passes d:glow
 says "derivative" 'this build has no derivatives \(WITHOUT=derivative\)'
+cat >rays.lua <<'LUA'
+local glint = require "glint"
+local gold = glint.material { model = "cook_torrance", f0 = { 1, 0.8, 0.3 } }
+local seen = gold:evaluate { normal = { 0, 0, 1 }, to_light = { 0, 1, 1 }, to_eye = { 0, 0, 1 } }
+return glint.scene { camera = glint.camera { eye = { 0, 3, 5 }, at = { 0, 0, 0 } }, background = seen.specular,
+  glint.point_light { position = { 1, 2, 5 } }, glint.sphere { center = { 0, 0, 0 }, radius = 1 },
+  glint.path { origin = { -4, 0.5, 1 }, direction = { 4, -0.5, -1 } } }
+LUA
+exits 0 "a path and a metal's highlight" rays.lua --size 96x64 -q -o core.png
+"$glint" rays.lua --size 96x64 -q -o full.png
+check "a path and a metal's highlight are the full build's" "$glint" compare core.png full.png --fail 0 --warn 0
 exits 2 "shutter" "$root/scripts/shutter.lua" --size 32x24 -f 1 -o a.png --set moves=lamp
 says "shutter" 'this build has no shutter \(WITHOUT=shutter\)'
 totals

@@ -15,7 +15,7 @@ const engine = load()
 
 let examples = []
 let job, renderer, files = {}, name = "scene.lua"
-let values = {}, frame = 1, playing = false, turning, picture
+let values = {}, frame = 1, playing = false, turning, picture, due = 0
 
 // ---- The editor ----
 
@@ -112,7 +112,7 @@ function shown(image, { coarse, ms }) {
     get("save-picture").disabled = false
   }
   clearTimeout(turning)
-  if (playing) turning = setTimeout(() => playing && goTo(frame % job.frames + 1, true), Math.max(0, 1000 / job.fps - ms))
+  if (playing) turning = setTimeout(() => playing && goTo(frame % job.frames + 1, true), Math.max(0, due - performance.now()))
 }
 
 // ---- Controls ----
@@ -142,6 +142,7 @@ function showPlayer() {
 
 function goTo(to, coarse) {
   frame = to
+  due = performance.now() + 1000 / job.fps
   get("frame").value = to
   get("counter").textContent = `${to} / ${job.frames}`
   if (coarse !== null) ask(coarse)

@@ -1,4 +1,4 @@
-// The reference of slope, arrival and eyes: the formulas of light.h, shade.h and effects/microfacet/ref.h on dual numbers.
+// The reference of slope, arrival and eyes: the formulas of light, shade and facets on dual numbers.
 
 static glint_dual dual_either(bool first, glint_dual a, glint_dual b) { return first ? a : b; }
 

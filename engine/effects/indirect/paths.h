@@ -29,7 +29,7 @@ struct glint_indirect {
         block[GLINT_TILE_SAMPLES]; ///< number of each point's pixel_block
     uint32_t lane[GLINT_TILE_SAMPLES]; ///< index of the pixel in its block
     draws first_draws, next_draws; ///< for the points, and for the hits of their paths
-    glint_rays first; ///< the first ray of each point, by number; equal for all paths except for its direction
+    glint_rays first; ///< the first ray of each point, by index; paths of a point differ only in direction
     double weight[3][GLINT_TILE_SAMPLES]; ///< weights of these rays before anything is subtracted
     glint_rays next[2]; ///< rays of odd and even steps
     double share[GLINT_TILE_SAMPLES]; ///< with plan->sky: weights of scattered rays by their densities

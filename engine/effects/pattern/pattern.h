@@ -66,7 +66,7 @@ void glint_tile_find_patterns(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts);
 
-/// Returns the offset of the plane of a field's channel among the tile's planes; -1: no material has it.
+/// Returns the index of the plane that holds this channel of the field; -1 if no material has the field.
 static inline ptrdiff_t glint_plane_start(const glint_plan_patterns *patterns, int field, int channel)
 {
     const int first = patterns->plane[field], more = channel < patterns->planes[field] ? channel : 0;

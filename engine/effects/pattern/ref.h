@@ -152,7 +152,7 @@ static double op_acos(double x)
     return x < 0 ? GLINT_PI_1 - 2 * angle : 2 * angle;
 }
 
-/// Returns S of the stage shade, rounded to float as there.
+/// Returns the highlight S as the stage shade computes it, rounded to float.
 static double op_highlight(double x, double s)
 {
     if (!(x >= 0x1p-126))

@@ -14,8 +14,8 @@ typedef struct glint_spread_args {
     double *grazing; ///< out: (1 - cosine)^5, where `cosine` is that of the angle between ray and facet
     double *weight; ///< out: G2 / G1, the probability that no other facet is in the way; 0 below the surface
     const double *head_on[3]; ///< weight of a ray that is reflected straight back, before the factor `weight`
-    const double *added[3]; ///< what `grazing` = 1 adds to it
-    double *ray_weight[3]; ///< out: weight * (head_on + added * grazing), at most GLINT_WEIGHT_MAX; NULL: not asked
+    const double *added[3]; ///< increase of that weight at `grazing` = 1
+    double *ray_weight[3]; ///< out: weight * (head_on + added * grazing), at most GLINT_WEIGHT_MAX; NULL: not wanted
 } glint_spread_args;
 // Groups without a wanted lane are not written. In other groups, lanes that are not wanted are undefined. The
 // arithmetic: ref.h: a point of the disk becomes a cap of the hemisphere of directions from which the facet is

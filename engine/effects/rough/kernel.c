@@ -1,7 +1,7 @@
 // spread: rays that the facets of GGX's distribution reflect. Contract: contract.h.
 #include "engine/effects/indirect/kernel_scatter.h"
 
-/// Computes the normal of the facet at a point of the disk, for the eye at e along the basis.
+/// Computes the normal of the facet at a point of the disk. e: direction to the eye in the tangent basis.
 static inline void R(facet_of)(const vr e[3], vr alpha, vr x, vr y, vr facet[3])
 {
     const vr zero = r_set(0), one = r_set(1), sx = alpha * e[0], sy = alpha * e[1];
