@@ -172,7 +172,7 @@ static void add_options(lua_State *L, const cost_study *study)
     lua_setfield(L, -2, "style");
 }
 
-// open(): runs the script. Returns the options, and the frame's scene and options as the knobs see them.
+// open(): runs the script. Returns the options, and the frame's scene and options as numbers that knobs read.
 static int open_study(lua_State *L)
 {
     cost_study *study = cost_study_of(L);

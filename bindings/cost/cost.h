@@ -119,7 +119,7 @@ void *cost_push_owner(lua_State *L, size_t size, const char *type, lua_CFunction
 
 // ---- subject.c ----
 
-/// Adds what the knobs see of the scene to the table on top of the stack. May raise.
+/// Adds the numbers of the scene that knobs read to the table on top of the stack. May raise an error.
 void cost_add_subject(lua_State *L, const cost_study *study);
 
 // ---- setting.c ----
@@ -142,7 +142,7 @@ extern const struct cost_scene_number {
     const char *name;
     size_t at; ///< offset in glint_scene_desc
 } cost_scene_numbers[COST_SCENE_NUMBERS];
-/// Reads plan's arguments from 1 on, see measure.c. May raise.
+/// Reads the arguments of the Lua function `plan` of measure.c. May raise an error.
 void cost_setting_read(lua_State *L, const cost_study *study, cost_setting *out);
 glint_status cost_setting_apply(const cost_setting *setting, cost_scene *scene, glint_error *error);
 bool cost_is_soft(const glint_light_desc *light); ///< whether the light has a surface and casts soft shadows

@@ -1,4 +1,4 @@
-// The scene of a study as the knobs see it. They decide by it whether they change anything.
+// The numbers of a study's scene by which knobs decide whether they change anything.
 #include "bindings/cost/cost.h"
 
 // Returns whether caps apply: all shapes are spheres and planes, and opaque.
