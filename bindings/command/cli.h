@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 
+#include "bindings/run/carried.h"
 #include "bindings/run/run.h"
 
 // ---- command_line.c, options.c ----
@@ -121,9 +122,6 @@ struct cli_option {
 };
 #define CLI_OPTION_COUNT 73
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
-#define CLI_VALUE_SIZE 64
-/// Returns the placeholder of the option's value in --help, or its choices; "" when it takes no value.
-void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE]);
 bool cli_option_may_lack(const cli_option *option); ///< returns whether the option's value is optional
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_request *request, const char *name, const char *text);
@@ -258,6 +256,25 @@ void cli_hush_script(lua_State *L);
 
 /// Prints the parameters of the script in `L` as a JSON list. May raise.
 void cli_print_params(lua_State *L, FILE *out);
+
+// ---- module.c ----
+
+/// A command whose logic is in Lua modules.
+typedef struct cli_task {
+    const cli_options *options;
+    cli_output *output;
+    glintL_run *run; ///< NULL: the command needs none
+    const luaL_Reg *functions; ///< C functions for the modules; upvalue 1 is the task
+    void *own; ///< data of these functions
+    int code; ///< the exit code
+} cli_task;
+
+/// Runs the modules and calls the function `function` of the last one. Its argument is a table with the functions of the
+/// task, fail(code, message), print(text), say(text), nearer(word, near, candidate), and the command line. Returns the
+/// exit code.
+int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count, const char *function);
+cli_task *cli_task_of(lua_State *L); ///< for C functions of a task
+int cli_task_fail(lua_State *L, int code, const char *message); ///< reports the failure and raises nil
 
 // ---- signals.c ----
 

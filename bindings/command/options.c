@@ -384,15 +384,4 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "verbose", 0, NULL, ALL, read_flag, .help = "with --version: also libraries, kernels and limits", AT(verbose) },
 };
 
-void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE])
-{
-    const char *const *words = glintL_render_choices(glintL_render_find(option->name));
-    size_t used = (size_t)snprintf(out, CLI_VALUE_SIZE, "%s", option->value ? option->value : "");
-    for (int i = 0; used == 0 || i > 0; i++) {
-        if (!words || !words[i])
-            return;
-        used += (size_t)snprintf(out + used, CLI_VALUE_SIZE - used, "%s%s", i ? "|" : "", words[i]);
-    }
-}
-
 bool cli_option_may_lack(const cli_option *option) { return option->value && option->value[0] == '['; }

@@ -1,0 +1,79 @@
+// Runs the commands whose logic is in Lua modules, and gives the modules the command line and the output.
+#include <string.h>
+
+#include "bindings/command/cli.h"
+
+cli_task *cli_task_of(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
+
+int cli_task_fail(lua_State *L, int code, const char *message)
+{
+    cli_task *task = cli_task_of(L);
+    task->code = cli_report_error(task->output, 0, code, message);
+    lua_pushnil(L);
+    return lua_error(L);
+}
+
+// fail(code, message): reports the failure and ends the module.
+static int fail(lua_State *L) { return cli_task_fail(L, (int)luaL_checkinteger(L, 1), luaL_checkstring(L, 2)); }
+
+// print(text): prints results.
+static int print(lua_State *L)
+{
+    size_t size;
+    const char *text = luaL_checklstring(L, 1, &size);
+    fwrite(text, 1, size, cli_task_of(L)->output->data);
+    return 0;
+}
+
+// say(text): prints a message for people.
+static int say(lua_State *L)
+{
+    if (!cli_task_of(L)->output->quiet)
+        fputs(luaL_checkstring(L, 1), stderr);
+    return 0;
+}
+
+// nearer(word, near, candidate): returns the one closer to the misspelt word; nil if neither is close.
+static int nearer(lua_State *L)
+{
+    lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));
+    return 1;
+}
+
+static void set_functions(lua_State *L, const cli_task *task, const luaL_Reg *functions)
+{
+    lua_pushlightuserdata(L, (void *)task);
+    luaL_setfuncs(L, functions, 1);
+}
+
+// Pushes the argument of the module's function.
+static void push_command(lua_State *L, const void *context)
+{
+    static const luaL_Reg common[] = {
+        { "fail", fail }, { "print", print }, { "say", say }, { "nearer", nearer }, { NULL, NULL }
+    };
+    const cli_task *task = context;
+    const cli_options *options = task->options;
+    lua_newtable(L);
+    set_functions(L, task, common);
+    set_functions(L, task, task->functions);
+    glintL_set_flag(L, "json", options->json);
+    glintL_set_text(L, "script", options->script);
+    glintL_set_text(L, "output", options->output);
+    lua_createtable(L, options->argument_count, 0);
+    for (int i = 0; i < options->argument_count; i++) {
+        lua_pushstring(L, options->arguments[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "arguments");
+}
+
+int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count, const char *function)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    glintL_made_text made;
+    if (!glintL_make_text(modules, count, function, push_command, task, &made, message) && !task->code)
+        task->code = cli_report_error(task->output, 0, GLINTL_EXIT_FAILED, message);
+    glintL_drop_text(&made);
+    return task->code;
+}
