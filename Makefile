@@ -117,10 +117,10 @@ ifeq ($(SANITIZE)$(WASM),)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
 
-# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): only
-# left_out.c and the tables of kernels change. WITHOUT=MESH omits a part of the kernels, see
-# engine/stages/contract/with.h.
-EFFECTS  := $(filter-out adaptive pattern translucent,$(notdir $(patsubst %/,%,$(wildcard engine/effects/*/))))
+# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): the
+# left_out.c of their folders stand in for them, and the tables of kernels change. WITHOUT=MESH omits a part of the
+# kernels, see engine/stages/contract/with.h.
+EFFECTS  := $(patsubst engine/effects/%/left_out.c,%,$(wildcard engine/effects/*/left_out.c))
 # bounce bounds the light along a ray, which indirect reads; rough follows its rays by indirect's paths.
 LEFT_OUT := $(sort $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough))))
 # The switches of with.h for the tables of kernels of a build without these effects.
@@ -185,11 +185,12 @@ NO_FLOAT     := $(if $(FLOAT),,-DGLINT_NO_FLOAT)
 STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 $(FLOAT:%=f32),$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
 ENGINE_SRC   := $(filter-out $(STAGE_SRC),$(ENGINE_SRC))
 TABLE_OBJ    := $(KERNELS:%=$(BUILD)/engine/stages/simd/table.%.o)
-# without EFFECTS: the other objects
-without       = $(filter-out $(foreach effect,$(1),$(BUILD)/engine/effects/$(effect)/%) $(if $(1),,%/left_out.o),$(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o))
+# without EFFECTS: the objects of a build that leaves them out
+without       = $(filter-out $(foreach effect,$(1),$(BUILD)/engine/effects/$(effect)/%) %/left_out.o,$(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o)) \
+                  $(1:%=$(BUILD)/engine/effects/%/left_out.o)
 ENGINE_OBJ   := $(call without,$(LEFT_OUT))
 CORE         := $(BUILD)/without/effects
-CORE_OBJ     := $(filter-out %/left_out.o $(TABLE_OBJ),$(call without,$(EFFECTS))) $(CORE)/left_out.o $(KERNELS:%=$(CORE)/table.%.o)
+CORE_OBJ     := $(filter-out $(TABLE_OBJ),$(call without,$(EFFECTS))) $(KERNELS:%=$(CORE)/table.%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
@@ -244,8 +245,7 @@ $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-ou
 $(UNROLLED:%.c=$(BUILD)/%.o): OWN := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
 $(BUILD)/engine/stages/simd/select.o: $(BUILD)/kernels
-$(BUILD)/engine/effects/left_out.o: OWN := $(LEFT_OUT:%=-DGLINT_LACKS_%)
-$(BUILD)/engine/effects/left_out.o $(BUILD)/libglint.a: $(BUILD)/effects
+$(BUILD)/libglint.a: $(BUILD)/effects
 $(BUILD)/engine/text/letters.o: OWN := $(FONT_CFLAGS)
 $(BUILD)/engine/file/pdf.o: OWN := $(CAIRO_CFLAGS)
 $(BUILD)/engine/file/jpeg.o: OWN := $(JPEG_CFLAGS)
@@ -315,7 +315,7 @@ shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 
 # When flags or libraries change, everything is compiled again.
 # When only KERNELS or FLOAT changes, only the tables of kernels (select.c, table.c) are. When other effects are left
-# out, left_out.c and table.c are compiled and the libraries made again.
+# out, table.c is compiled and the libraries are made again.
 $(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS) $(FLOAT)
 $(BUILD)/effects: SAID = $(LEFT_OUT)
@@ -326,7 +326,7 @@ $(BUILD)/flags $(BUILD)/kernels $(BUILD)/effects: FORCE
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(wildcard $(CORE)/*.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(EFFECTS:%=$(BUILD)/engine/effects/%/left_out.d) $(wildcard $(CORE)/*.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # ---- Tests ----
 
@@ -349,11 +349,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	$(Q)$(CC) $(COMPILE) -D_GNU_SOURCE -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
 # The command without effects, of the same objects, except the tables of kernels.
-$(CORE)/left_out.o: engine/effects/left_out.c $(BUILD)/flags
-	@mkdir -p $(@D)
-	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(HARDEN) $(EFFECTS:%=-DGLINT_LACKS_%) -MMD -MP -c $< -o $@
-$(CORE)/table.%.o: engine/stages/simd/table.c $(BUILD)/flags $(BUILD)/kernels
+$(KERNELS:%=$(CORE)/table.%.o): $(CORE)/table.%.o: engine/stages/simd/table.c $(BUILD)/flags $(BUILD)/kernels
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(PLAIN) -DGLINT_ISA=$* $(NO_FLOAT) $(call without_kernels,$(EFFECTS)) -MMD -MP -c $< -o $@

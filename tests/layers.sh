@@ -47,7 +47,7 @@ effects='engine/effects/[a-z_]*'
 for files in 'engine/plan/*.[ch]' 'engine/effects/*/plan*.[ch]' 'engine/effects/derivative/slopes.h'; do
     includes "$files" engine/plan engine/effects "$effects/(plan|slopes).h" engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
 done
-layer engine/reuse engine/program engine/plan engine/film $stages $base
+layer engine/reuse "$effects/plan.h" engine/program engine/plan engine/film $stages $base
 layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
 layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/overlay engine/film $base
 kernels=$(find engine/effects -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')

@@ -1,4 +1,5 @@
 #include "engine/base/status.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/scene/area_light.h"
 #include "engine/plan/plan.h"
 

@@ -3,6 +3,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/effects/bounce/plan.h"
 #include "engine/plan/plan.h"
 
 #include <stdlib.h>

@@ -4,6 +4,9 @@
 /// declaration.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/effects/bounce/plan.h"
+#include "engine/effects/environment/plan.h"
+#include "engine/effects/visible_light/plan.h"
 #include "engine/plan/light_groups.h"
 #include "engine/program/program.h"
 

@@ -2,6 +2,7 @@
 #include "engine/plan/light_groups.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/effects/visible_light/plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -17,6 +17,7 @@
 #include "engine/geometry/media.h"
 #include "engine/overlay/overlay.h"
 #include "engine/effects/derivative/plan.h"
+#include "engine/effects/indirect/plan.h"
 #include "engine/effects/pattern/plan.h"
 #include "engine/effects/translucent/plan.h"
 #include "engine/plan/stage.h"
@@ -65,73 +66,8 @@ typedef struct glint_plan_light {
         ///< `position_key` and the colours
 } glint_plan_light;
 
-/// An edge of a polygon: its first corner, and the unit vector perpendicular to it.
-typedef struct glint_plan_edge {
-    double corner[3], inwards[3];
-} glint_plan_edge;
-
-/// The surface of a visible light.
-typedef struct glint_plan_visible_light {
-    bool ball; ///< otherwise flat
-    bool one_sided; ///< flat light: shines only to the side of its normal
-    double center[3], radius; ///< bounding ball; for a disk or sphere, its centre and radius
-    double normal[3]; ///< flat: unit
-    const glint_plan_edge *edges; ///< polygon
-    size_t edge_count; ///< 0: a disk
-    double shown[3]; ///< brightness: pi times its radiance, like all light in the film
-    uint32_t group; ///< group of the light, as in glint_plan_light
-} glint_plan_visible_light;
-
-/// A background computed by a program.
-typedef struct glint_plan_environment {
-    glint_program *program; ///< owned reference
-    /// Maps p, a direction, to its position in a picture of all directions; NULL: `program` does not read it
-    glint_program *uv;
-    uint32_t row_count; ///< the largest number of rows that one of the two programs needs
-    double pixel; ///< angle of a pixel, for filtering; 0: rays are parallel
-    double most; ///< upper bound of the program's result
-} glint_plan_environment;
-
-/// Mirror, transmission and absorption of a material.
-typedef struct glint_bounce_material {
-    double mirror[3], transmission[3], absorption[3], ior;
-    double clear; ///< share of the light that goes straight on; 0 if a program computes it
-    bool fresnel, mirrors, transmits; ///< in some channel
-    bool clears; ///< whether the material is translucent
-    bool rough; ///< whether the rays that it reflects and refracts are spread by microfacets; then also:
-    double alpha; ///< width of their distribution
-    bool beckmann; ///< the distribution; false: GGX
-    bool facets; ///< whether highlights are of the same microfacets, so that reflected rays do not see lamps
-    double specular[3]; ///< factor of `mirror`; 1 without `facets`
-    bool schlick; ///< whether `mirror` is multiplied by Schlick's reflectance, from f0
-    double f0[3];
-} glint_bounce_material;
-
-/// Returns whether a material sends on rays: reflected, refracted or straight through it.
-static inline bool glint_sends_on(const glint_bounce_material *m) { return m->mirrors || m->transmits || m->clears; }
-/// Returns whether it reflects or refracts rays in many directions.
-static inline bool glint_is_spreading(const glint_bounce_material *m) { return (m->mirrors || m->transmits) && m->rough; }
-/// Returns whether it sends on rays in the directions of the laws of reflection and refraction.
-static inline bool glint_is_sharp(const glint_bounce_material *m) { return (m->mirrors || m->transmits) && !m->rough; }
-
-/// Indirect light; all 0: there is none.
-typedef struct glint_plan_indirect {
-    uint32_t samples, bounces;
-    uint32_t *light_rows; ///< first row in plan->lights of each light, and one more entry for the end
-    uint32_t light_count;
-    double (*rest)[3]; ///< one per material: the ambient light that is added where paths end
-    double least; ///< a path ends when its weight falls below this share of its weight at the start
-    bool is_sky; ///< ambient occlusion: paths only test whether the sky is visible
-    double distance; ///< ambient occlusion: distance within which surfaces block the sky; may be infinite
-} glint_plan_indirect;
-
-#define GLINT_BOUNCE_DEPTH 31 ///< largest max_depth if mirror + transmission of a material exceed 1
-/// number of surfaces in a chain at which both the reflected and the refracted ray are followed
-#define GLINT_BOUNCE_SPLITS 16
 /// Upper bound of the plan's light and colours. Such values are white in any picture, and their products stay finite.
 #define GLINT_STRENGTH_MAX 1e150
-/// Limit, in linear light per sample, for the total of weak rays that are not followed
-#define GLINT_BOUNCE_LOSS 0x1p-20
 
 typedef struct glint_text_line {
     char effect[48];
@@ -170,22 +106,22 @@ struct glint_plan {
     uint32_t light_count, shadow_count; ///< number of rows in `lights`; number of these rows that cast shadows
     uint32_t spared_count; ///< number of rows that cast shadows but need no shadow rays of their own
     double ambient[3], background[3]; ///< ambient light; background colour, 0 if there is an environment
-    glint_plan_environment *environment; ///< NULL: the background is plain
+    struct glint_plan_environment *environment; ///< NULL: the background is plain
     const struct glint_sky *sky; ///< the background's bright parts, for sampling; NULL: none, or not needed. A reference
     struct {
         bool on;
         uint32_t material; ///< the innermost medium
         double absorption[3];
     } veil; ///< the medium that contains the eye; `on`: it absorbs light
-    glint_plan_visible_light *visible_lights; ///< the surfaces of the visible lights
-    glint_plan_edge *visible_light_edges; ///< edges of all visible lights
+    struct glint_plan_visible_light *visible_lights; ///< the surfaces of the visible lights
+    struct glint_plan_edge *visible_light_edges; ///< edges of all visible lights
     uint32_t visible_light_count;
     size_t visible_light_edge_count;
 
     glint_plan_derivatives *derivatives; ///< NULL: none is requested
     struct glint_light_groups *light_groups; ///< NULL: no light pass is requested
 
-    glint_bounce_material *bouncing; ///< one per material; NULL: none needs secondary rays
+    struct glint_bounce_material *bouncing; ///< one per material; NULL: none needs secondary rays
     bool mirrors, transmits, clears, absorbs; ///< whether some material has a mirror, transmits, is translucent;
         ///< absorbs: transmits and absorbs light
     bool sharp; ///< whether some material is a smooth mirror or smooth glass
@@ -342,17 +278,6 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
 static inline bool glint_plan_has_indirect(const glint_scene_desc *scene)
 {
     return scene->has_ambient_occlusion || (scene->has_indirect && scene->indirect_bounces > 0);
-}
-/// Continues a key with max_depth and the materials that send on rays.
-glint_key glint_bounce_key(const glint_plan *plan, glint_key key);
-/// Continues a key with the transmission of a material.
-static inline glint_key glint_transmission_key(const glint_bounce_material *m, glint_key key)
-{
-    GLINT_KEY_ADD(key, m->transmission);
-    if (m->clear > 0)
-        GLINT_KEY_ADD(key, m->clear);
-    GLINT_KEY_ADD(key, m->absorption);
-    return key;
 }
 /// Finds the media that contain the eye of a perspective camera, if some material transmits.
 glint_status glint_plan_eye(glint_plan *plan, glint_error *error);

@@ -1,5 +1,6 @@
 #include "engine/reuse/reuse.h"
 #include "engine/base/alloc.h"
+#include "engine/effects/bounce/plan.h"
 #include "engine/stages/simd/coefficients.h"
 
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 #define GLINT_BATCH_H
 
 #include "engine/effects/pattern/pattern.h"
+#include "engine/effects/bounce/plan.h"
 #include "engine/tile/rays.h"
 
 /// Returns a weight, limited to GLINT_WEIGHT_MAX.

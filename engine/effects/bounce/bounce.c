@@ -19,7 +19,7 @@
 #include "engine/base/vec.h"
 #include "engine/effects/derivative/work.h"
 #include "engine/effects/light_groups/light_groups.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/bounce/plan.h"
 
 #include <stdlib.h>
 #include <string.h>

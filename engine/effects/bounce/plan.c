@@ -2,7 +2,9 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/bounce/plan.h"
+#include "engine/effects/environment/plan.h"
+#include "engine/effects/visible_light/plan.h"
 
 static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
 
@@ -179,12 +181,7 @@ glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from
     const glint_scene_desc *scene = glint_scene_get(from->scene);
     const glint_list *list = &plan->geometry->materials;
     double splitting = 0;
-    bool any = false;
-    for (size_t i = 0; i < list->count; i++) {
-        const glint_material_desc *desc = glint_plan_material(plan, i);
-        any = any || plan->translucent || glint_material_mirrors(desc) || glint_material_transmits(desc);
-    }
-    if (!any) {
+    if (!glint_bounce_is_needed(plan)) {
         if (plan->indirect.samples)
             bound_light(plan);
         return GLINT_OK;

@@ -1,5 +1,6 @@
 /// Refuses frames with effects that have no derivative.
 #include "engine/base/status.h"
+#include "engine/effects/bounce/plan.h"
 #include "engine/effects/derivative/slopes.h"
 #include "engine/program/program.h"
 

@@ -8,6 +8,9 @@
 #include "engine/program/program.h"
 #include "engine/stages/stages.h"
 
+struct glint_plan;
+struct glint_plan_input;
+
 /// Slopes of a material's mirror, transmission, absorption and translucency.
 typedef struct glint_derivative_bounce {
     double mirror[3], transmission[3], absorption[3], ior; ///< 0 for numbers that are not read
@@ -47,5 +50,11 @@ typedef struct glint_plan_derivatives {
     glint_plan_derivative level[GLINT_DERIVATIVES_MAX]; ///< the same with all zero slopes replaced by 1: shows what
         ///< depends on the parameter
 } glint_plan_derivatives;
+
+glint_status glint_derivative_prepare(struct glint_plan *plan, const struct glint_plan_input *from, glint_error *error);
+glint_status glint_derivative_check(const struct glint_plan *plan, const glint_scene *scene, glint_error *error);
+void glint_derivative_release(struct glint_plan *plan);
+/// Continues a key with everything that a pass, of the frame's derivatives, reads in addition to the frame.
+glint_key glint_derivative_key(const struct glint_plan *plan, int pass, glint_key key);
 
 #endif

@@ -1,7 +1,6 @@
 /// The declaration of the stage derivative.
 #include "engine/base/alloc.h"
 #include "engine/effects/derivative/work.h"
-#include "engine/effects/prepare.h"
 
 #include <stdlib.h>
 

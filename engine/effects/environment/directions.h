@@ -2,7 +2,7 @@
 #ifndef GLINT_ENVIRONMENT_DIRECTIONS_H
 #define GLINT_ENVIRONMENT_DIRECTIONS_H
 
-#include "engine/plan/plan.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/stages/stages.h"
 
 struct glint_environment;

@@ -7,7 +7,7 @@
 #include "engine/program/program.h"
 #include "engine/effects/environment/directions.h"
 #include "engine/effects/pattern/inputs.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/tile/batch.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "engine/base/maker.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/program/builder.h"
 
 #include <stdlib.h>

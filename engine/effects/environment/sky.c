@@ -2,7 +2,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/effects/environment/directions.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/program/program.h"
 
 #include <math.h>

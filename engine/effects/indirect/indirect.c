@@ -18,7 +18,6 @@
 #include "engine/base/vec.h"
 #include "engine/effects/indirect/paths.h"
 #include "engine/effects/light_groups/light_groups.h"
-#include "engine/effects/prepare.h"
 #include "engine/effects/rough/rough.h"
 
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/environment/plan.h"
 
 static bool is_matt(const glint_plan *plan, uint32_t i)
 {

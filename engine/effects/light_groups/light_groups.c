@@ -1,6 +1,7 @@
 #include "engine/effects/light_groups/light_groups.h"
 #include "engine/effects/vertex_shading/shading_points.h"
 #include "engine/base/alloc.h"
+#include "engine/effects/visible_light/plan.h"
 
 #include <float.h>
 #include <math.h>

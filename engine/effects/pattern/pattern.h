@@ -3,6 +3,7 @@
 #define GLINT_TILE_PATTERN_H
 
 #include "engine/tile/tile.h"
+#include "engine/effects/bounce/plan.h"
 
 /// Selects a set of planes. A walk may begin while the results of another one are still needed.
 typedef enum glint_walk {

@@ -1,6 +1,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/plan/plan.h"
 #include "engine/program/program.h"
 #include "engine/scene/fields.h"

@@ -1,5 +1,6 @@
 /// Reads the results of materials' programs for single samples.
 #include "engine/base/vec.h"
+#include "engine/effects/bounce/plan.h"
 #include "engine/effects/pattern/pattern.h"
 #include "engine/plan/plan.h"
 #include "engine/tile/tile.h"

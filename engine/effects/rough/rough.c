@@ -5,7 +5,7 @@
 /// them; the rays of other rough mirrors and of rough glass see the lamps that are visible.
 #include "engine/base/vec.h"
 #include "engine/effects/indirect/paths.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/effects/rough/rough.h"
 
 #include <stdlib.h>

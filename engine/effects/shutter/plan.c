@@ -6,7 +6,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/shutter/plan.h"
 #include "engine/plan/light_groups.h"
 
 #include <stdlib.h>

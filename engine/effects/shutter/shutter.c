@@ -2,7 +2,7 @@
 /// with reuse between them, and added up in double.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/shutter/plan.h"
 #include "engine/film/tone.h"
 #include "engine/frame/render.h"
 

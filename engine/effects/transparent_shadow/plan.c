@@ -1,5 +1,6 @@
 #include "engine/effects/transparent_shadow/plan.h"
 #include "engine/base/vec.h"
+#include "engine/effects/bounce/plan.h"
 
 #include <math.h>
 

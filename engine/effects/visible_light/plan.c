@@ -3,7 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/area_light.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/visible_light/plan.h"
 #include "engine/plan/light_groups.h"
 
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/effects/light_groups/light_groups.h"
 #include "engine/tile/batch.h"
-#include "engine/effects/prepare.h"
+#include "engine/effects/visible_light/plan.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,5 @@
+/// A build without light that fades with the distance.
+#include "engine/effects/left_out.h"
+
+GLINT_LEFT_OUT(depth_cue, "depth_cue", "scene.depth_cue", "light that fades with the distance",
+               from->scene->desc.has_depth_cue || plan->veil.on)

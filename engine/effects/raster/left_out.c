@@ -1,0 +1,4 @@
+/// A build without scan conversion.
+#include "engine/effects/left_out.h"
+
+GLINT_LEFT_OUT(raster, "raster", "visibility", "scan conversion", plan->desc.visibility == GLINT_VISIBILITY_SCAN)
