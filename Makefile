@@ -124,10 +124,10 @@ EFFECTS  := $(patsubst engine/effects/%/left_out.c,%,$(wildcard engine/effects/*
 # bounce bounds the light along a ray, which indirect reads; rough follows its rays by indirect's paths.
 LEFT_OUT := $(sort $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough))))
 # The switches of with.h for the tables of kernels of a build without these effects.
-without_kernels = $(shell echo '$(1:%=-DGLINT_WITH_%=0)' | tr a-z A-Z)
+without_kernels = $(shell echo '$(1:%=-DGLINT_WITHOUT_%=0,0)' | tr a-z A-Z)
 PARTS_OUT := $(filter-out all $(EFFECTS),$(WITHOUT))
-$(foreach part,$(PARTS_OUT),$(if $(shell grep -w 'define GLINT_WITH_$(part)' engine/stages/contract/with.h),,$(error WITHOUT=$(part): no such effect or part of the kernels)))
-DEFINES += $(PARTS_OUT:%=-DGLINT_WITH_%=0) $(if $(PARTS_OUT),-Wno-type-limits)
+$(foreach part,$(PARTS_OUT),$(if $(shell grep -rl 'GLINT_WITH($(part))' engine),,$(error WITHOUT=$(part): no such effect or part of the kernels)))
+DEFINES += $(PARTS_OUT:%=-DGLINT_WITHOUT_%=0,0) $(if $(PARTS_OUT),-Wno-type-limits)
 
 # PORTABLE=1 builds here as for other machines:
 # generic kernels, POSIX instead of inotify, eventfd etc., and no --untrusted.

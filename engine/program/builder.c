@@ -13,7 +13,7 @@ glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, 
     GLINT_REFUSE_NULL(out, error);
     if ((unsigned)kind > GLINT_PROGRAM_SHADER)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: pattern or shader expected, got %d", (int)kind);
-    if (!GLINT_WITH_PROGRAM)
+    if (!GLINT_WITH(PROGRAM))
         return glint_fail(error, GLINT_ERR_UNSUPPORTED,
                           "this glint was built without patterns, shaders and textures (WITHOUT=PROGRAM)");
     glint_builder *builder = calloc(1, sizeof *builder);

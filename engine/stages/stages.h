@@ -41,31 +41,31 @@
     ROW(true, void, cast_rays, (const glint_cast_args *args)) \
     ROW(true, void, surface, (const glint_surface_args *args)) \
     ROW(true, void, lit_surface, (const glint_surface_args *surface, const glint_light_args *light)) \
-    ROW(GLINT_WITH_MICROFACET, void, view, (const glint_view_args *args)) \
+    ROW(GLINT_WITH(MICROFACET), void, view, (const glint_view_args *args)) \
     ROW(true, void, light, (const glint_light_args *args)) \
-    ROW(GLINT_WITH_MICROFACET, void, facet, (const glint_facet_args *args)) \
-    ROW(GLINT_WITH_SHADOW, void, occlude, (const glint_occlude_args *args)) \
-    ROW(GLINT_WITH_AREA && GLINT_WITH_SHADOW, bool, soft_light, (const glint_soft_args *args)) \
-    ROW(GLINT_WITH_BOUNCE, void, bounce, (const glint_bounce_args *args)) \
-    ROW(GLINT_WITH_VERTEX_SHADING, void, vertex, (const glint_vertex_args *args)) \
-    ROW(GLINT_WITH_INDIRECT, void, scatter, (const glint_scatter_args *args)) \
-    ROW(GLINT_WITH_ROUGH, void, spread, (const glint_spread_args *args)) \
-    ROW(GLINT_WITH_RASTER, void, raster, (const glint_raster_args *args))
+    ROW(GLINT_WITH(MICROFACET), void, facet, (const glint_facet_args *args)) \
+    ROW(GLINT_WITH(SHADOW), void, occlude, (const glint_occlude_args *args)) \
+    ROW(GLINT_WITH(AREA) && GLINT_WITH(SHADOW), bool, soft_light, (const glint_soft_args *args)) \
+    ROW(GLINT_WITH(BOUNCE), void, bounce, (const glint_bounce_args *args)) \
+    ROW(GLINT_WITH(VERTEX_SHADING), void, vertex, (const glint_vertex_args *args)) \
+    ROW(GLINT_WITH(INDIRECT), void, scatter, (const glint_scatter_args *args)) \
+    ROW(GLINT_WITH(ROUGH), void, spread, (const glint_spread_args *args)) \
+    ROW(GLINT_WITH(RASTER), void, raster, (const glint_raster_args *args))
 #define GLINT_SAMPLE_KERNELS(ROW) \
-    ROW(GLINT_WITH_PROGRAM, void, program, (const glint_program_args *args)) \
-    ROW(GLINT_WITH_PROGRAM, void, unit, (const glint_unit_args *args)) \
-    ROW(GLINT_WITH_PROGRAM, void, choose, (const glint_choose_args *args)) \
-    ROW(GLINT_WITH_DERIVATIVE, void, eyes, (const glint_eyes_args *args)) \
-    ROW(GLINT_WITH_DERIVATIVE, void, bend, (const glint_bend_args *args)) \
-    ROW(GLINT_WITH_DERIVATIVE, void, slope, (const glint_slope_args *args)) \
-    ROW(GLINT_WITH_DERIVATIVE, void, arrival, (const glint_arrival_args *args)) \
-    ROW(GLINT_WITH_INDIRECT, void, sky, (const glint_sky_args *args)) \
+    ROW(GLINT_WITH(PROGRAM), void, program, (const glint_program_args *args)) \
+    ROW(GLINT_WITH(PROGRAM), void, unit, (const glint_unit_args *args)) \
+    ROW(GLINT_WITH(PROGRAM), void, choose, (const glint_choose_args *args)) \
+    ROW(GLINT_WITH(DERIVATIVE), void, eyes, (const glint_eyes_args *args)) \
+    ROW(GLINT_WITH(DERIVATIVE), void, bend, (const glint_bend_args *args)) \
+    ROW(GLINT_WITH(DERIVATIVE), void, slope, (const glint_slope_args *args)) \
+    ROW(GLINT_WITH(DERIVATIVE), void, arrival, (const glint_arrival_args *args)) \
+    ROW(GLINT_WITH(INDIRECT), void, sky, (const glint_sky_args *args)) \
     ROW(true, void, shade, (const glint_shade_args *args)) \
-    ROW(GLINT_WITH_SAMPLES, void, resolve, (const glint_resolve_args *args)) \
-    ROW(GLINT_WITH_SAMPLES, void, resolve_samples, (const glint_shade_args *sample, uint32_t count)) \
-    ROW(GLINT_WITH_SAMPLES, void, estimate, (const glint_estimate_args *args)) \
-    ROW(GLINT_WITH_SAMPLES, void, range, (const glint_range_args *args, float out[2])) \
-    ROW(GLINT_WITH_SAMPLES, void, differ, (const glint_differ_args *args, glint_differences *out)) \
+    ROW(GLINT_WITH(SAMPLES), void, resolve, (const glint_resolve_args *args)) \
+    ROW(GLINT_WITH(SAMPLES), void, resolve_samples, (const glint_shade_args *sample, uint32_t count)) \
+    ROW(GLINT_WITH(SAMPLES), void, estimate, (const glint_estimate_args *args)) \
+    ROW(GLINT_WITH(SAMPLES), void, range, (const glint_range_args *args, float out[2])) \
+    ROW(GLINT_WITH(SAMPLES), void, differ, (const glint_differ_args *args, glint_differences *out)) \
     ROW(true, void, tone, (const glint_tone_args *args))
 
 #define GLINT_KERNEL_MEMBER(with, result, name, parameters) result(*name) parameters;

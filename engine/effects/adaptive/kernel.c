@@ -88,7 +88,7 @@ static void differ(const glint_differ_args *args, glint_differences *out)
         differ_lines(args, args->along, args->q != NULL, out);
 }
 
-#if GLINT_WITH_SAMPLES
+#if GLINT_WITH(SAMPLES)
 KERNEL(estimate, glint_estimate_args)
 
 void GLINT_ENTRY(range)(const glint_range_args *args, float out[2])

@@ -44,6 +44,6 @@ static void R(bounce)(const glint_bounce_args *args)
     }
 }
 
-#if GLINT_WITH_BOUNCE
+#if GLINT_WITH(BOUNCE)
 KERNEL(bounce, glint_bounce_args)
 #endif

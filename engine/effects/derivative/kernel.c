@@ -2,7 +2,7 @@
 #include "engine/effects/derivative/kernel_bend.h"
 #include "engine/effects/derivative/kernel_light.h"
 
-#if GLINT_WITH_DERIVATIVE
+#if GLINT_WITH(DERIVATIVE)
 KERNEL(eyes, glint_eyes_args)
 KERNEL(bend, glint_bend_args)
 KERNEL(slope, glint_slope_args)

@@ -16,6 +16,6 @@ static void sky(const glint_sky_args *args)
     }
 }
 
-#if GLINT_WITH_INDIRECT
+#if GLINT_WITH(INDIRECT)
 KERNEL(sky, glint_sky_args)
 #endif

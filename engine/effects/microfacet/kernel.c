@@ -106,7 +106,7 @@ static void R(facet)(const glint_facet_args *args)
     }
 }
 
-#if GLINT_WITH_MICROFACET
+#if GLINT_WITH(MICROFACET)
 KERNEL(view, glint_view_args)
 KERNEL(facet, glint_facet_args)
 #endif

@@ -7,7 +7,7 @@
 
 static inline bool has_facets(const glint_shade_material *material)
 {
-    return GLINT_WITH_MICROFACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
+    return GLINT_WITH(MICROFACET) && material->highlight == GLINT_HIGHLIGHT_FACETS;
 }
 
 /// Returns Smith's masking for Beckmann's distribution, in Heitz' form of Walter's fit: x times Lambda at the cosine
@@ -54,7 +54,7 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
     const bool facets = has_facets(material);
-    const uint32_t planes = GLINT_WITH_PROGRAM ? material->planes : 0;
+    const uint32_t planes = GLINT_WITH(PROGRAM) ? material->planes : 0;
     const float *exponent = planes & GLINT_PLANE_SHININESS ? args->planes->shininess + at : NULL;
     const float *width = planes & GLINT_PLANE_ALPHA ? args->planes->alpha + at : NULL;
     const vf most = f_set(GLINT_ATTENUATION_MAX), zero = f_set(0);

@@ -202,6 +202,6 @@ static void R(raster)(const glint_raster_args *args)
         R(finish_group)(cast, g);
 }
 
-#if GLINT_WITH_RASTER
+#if GLINT_WITH(RASTER)
 KERNEL(raster, glint_raster_args)
 #endif

@@ -72,6 +72,6 @@ static void R(spread)(const glint_spread_args *args)
             R(spread_group)(args, (size_t)g * GLINT_GROUP);
 }
 
-#if GLINT_WITH_ROUGH
+#if GLINT_WITH(ROUGH)
 KERNEL(spread, glint_spread_args)
 #endif

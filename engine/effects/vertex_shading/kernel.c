@@ -62,6 +62,6 @@ static void R(vertex)(const glint_vertex_args *args)
     }
 }
 
-#if GLINT_WITH_VERTEX_SHADING
+#if GLINT_WITH(VERTEX_SHADING)
 KERNEL(vertex, glint_vertex_args)
 #endif

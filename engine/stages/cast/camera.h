@@ -127,7 +127,7 @@ static void R(camera_lens)(const glint_camera_args *args)
 
 static void R(camera)(const glint_camera_args *args)
 {
-    if (GLINT_WITH_LENS && args->lens)
+    if (GLINT_WITH(LENS) && args->lens)
         R(camera_lens)(args);
     else if (args->pixel[0])
         R(camera_pixels)(args);

@@ -212,7 +212,7 @@ INNER void R(cast_prims_as)(R(tile_cast) * tile, const bool gathered, R(cast_lea
     const int count = sort_slots(mask & ~triangles, seen->near, order);
     for (int i = 0; i < count; i++)
         R(cast_slot)(tile, gathered, node, seen, order[i]);
-    if (triangles && !gathered && GLINT_WITH_LENS && tile->lens)
+    if (triangles && !gathered && GLINT_WITH(LENS) && tile->lens)
         R(cast_lens_triangles)(tile, leaf, node, seen, triangles);
     else if (triangles)
         R(cast_triangles)(tile, gathered, leaf, node, seen, triangles);
@@ -254,7 +254,7 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         unsigned mask = 0, prims = 0;
         rows_behind behind;
         if (find_behind((const float(*)[SCREEN_ACROSS])tile->far, top, &behind)) {
-            mask = GLINT_WITH_LENS && tile->lens
+            mask = GLINT_WITH(LENS) && tile->lens
                        ? boxes_through_lens(node, &tile->view, &tile->lens->seen, &seen[turn])
                        : boxes_on_screen(node, &tile->view, &seen[turn]);
             const unsigned all = prims_of_node(node);

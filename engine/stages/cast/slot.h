@@ -29,7 +29,7 @@ INNER int R(find_near_groups)(const R(tile_cast) * tile, const bool gathered, co
     for (; groups; groups &= groups - 1) {
         const R(tile_group) at = R(lowest_group)(tile, gathered, groups);
         unsigned lanes = 0;
-        if (!gathered && GLINT_WITH_LENS && tile->lens)
+        if (!gathered && GLINT_WITH(LENS) && tile->lens)
             lanes = R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, at.x, at.y);
         else
             for (int i = 0; i < GLINT_GROUP; i += VF) {

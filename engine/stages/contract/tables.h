@@ -29,10 +29,10 @@
 typedef enum glint_prim_kind {
     GLINT_PRIM_SPHERE,
     GLINT_PRIM_PLANE,
-    GLINT_PRIM_TRIANGLE = GLINT_KIND(GLINT_WITH_MESH, 2),
-    GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH_SOLID, 3),
-    GLINT_PRIM_COMBINED = GLINT_KIND(GLINT_WITH_COMBINED, 4),
-    GLINT_PRIM_HULL = GLINT_KIND(GLINT_WITH_COMBINED, 5) ///< a closed mesh, as a part of a combined solid
+    GLINT_PRIM_TRIANGLE = GLINT_KIND(GLINT_WITH(MESH), 2),
+    GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH(SOLID), 3),
+    GLINT_PRIM_COMBINED = GLINT_KIND(GLINT_WITH(COMBINED), 4),
+    GLINT_PRIM_HULL = GLINT_KIND(GLINT_WITH(COMBINED), 5) ///< a closed mesh, as a part of a combined solid
 } glint_prim_kind;
 
 /// One surface, without data of any ray. It fills one cache line; the filter only reads the first half.

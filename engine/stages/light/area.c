@@ -1,7 +1,7 @@
 // The light from an area light, with its shadows.
 #include "engine/stages/light/soft_light.h"
 
-#if GLINT_WITH_AREA && GLINT_WITH_SHADOW
+#if GLINT_WITH(AREA) && GLINT_WITH(SHADOW)
 bool GLINT_ENTRY(R(soft_light))(const glint_soft_args *args)
 {
     return R(soft_light)(args);

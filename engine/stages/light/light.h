@@ -80,7 +80,7 @@ INNER rm R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a
 INNER void R(find_highlight)(const R(gloss) * gloss, const R(lit_points) * p, int i, vr l[LIT_PARTS][3],
                              const vr l2[LIT_PARTS], const vr nl[LIT_PARTS], R(lit_lanes) * out)
 {
-    const unsigned phong = gloss->phong >> i & out->lit, blinn = GLINT_WITH_BLINN ? gloss->blinn >> i & out->lit : 0;
+    const unsigned phong = gloss->phong >> i & out->lit, blinn = GLINT_WITH(BLINN) ? gloss->blinn >> i & out->lit : 0;
     vr num[LIT_PARTS], den[LIT_PARTS], x[LIT_PARTS], less_1[LIT_PARTS];
     rm some[LIT_PARTS];
     if (!(phong | blinn))
@@ -235,7 +235,7 @@ INNER void R(sort_lanes)(const glint_light_args *args, const glint_shade_materia
 {
     if (material->highlight == GLINT_HIGHLIGHT_PHONG)
         gloss->phong |= lanes;
-    else if (GLINT_WITH_BLINN && material->highlight == GLINT_HIGHLIGHT_BLINN)
+    else if (GLINT_WITH(BLINN) && material->highlight == GLINT_HIGHLIGHT_BLINN)
         gloss->blinn |= lanes;
     else
         return;
@@ -341,9 +341,9 @@ static void R(light_area)(const glint_light_args *args)
 
 static void R(light)(const glint_light_args *args)
 {
-    if (GLINT_WITH_AREA && args->light_sample[0])
+    if (GLINT_WITH(AREA) && args->light_sample[0])
         R(light_area)(args);
-    else if (GLINT_WITH_SPOT && args->spot)
+    else if (GLINT_WITH(SPOT) && args->spot)
         R(light_groups)(args, LIGHT_SPOT, NULL);
     else
         R(light_groups)(args, LIGHT_PLAIN, NULL);

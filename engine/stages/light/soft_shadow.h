@@ -62,9 +62,9 @@ static void R(occlude_light_sample)(const glint_occlude_args *args)
 
 static void R(occlude)(const glint_occlude_args *args)
 {
-    if (GLINT_WITH_CAPS && args->visible)
+    if (GLINT_WITH(CAPS) && args->visible)
         R(occlude_caps)(args);
-    else if (GLINT_WITH_AREA && args->light_sample[0])
+    else if (GLINT_WITH(AREA) && args->light_sample[0])
         R(occlude_light_sample)(args);
     else
         R(occlude_point)(args);

@@ -27,7 +27,7 @@ static inline void add_factors(const glint_shade_args *args, const glint_shade_m
                                size_t at, light_factors *factors)
 {
     const bool power = specular && material->lobe == GLINT_LOBE_POWER;
-    const bool painted = GLINT_WITH_PROGRAM && material->planes & GLINT_PLANE_SHININESS;
+    const bool painted = GLINT_WITH(PROGRAM) && material->planes & GLINT_PLANE_SHININESS;
     const float *exponent = painted ? args->planes->shininess + at : NULL;
     bool begun = false; // true: the next lights may be joined to the last light of the list
     for (uint32_t k = 0; k < args->light_count; k++) {
@@ -119,7 +119,7 @@ static inline void begin_lanes(const glint_shade_args *args, light_colors *color
     m->at = at;
     m->lanes = args->only ? rest : rest & lanes_equal(args->material + at, index);
     m->specular = args->highlights && m->material->highlight;
-    m->painted = GLINT_WITH_PROGRAM && m->material->planes;
+    m->painted = GLINT_WITH(PROGRAM) && m->material->planes;
     m->shaded = false;
     m->factors.count = 0;
     m->factors.shiny = 0;

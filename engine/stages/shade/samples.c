@@ -3,7 +3,7 @@
 #include "engine/stages/shade/shade.h"
 
 KERNEL(shade, glint_shade_args)
-#if GLINT_WITH_SAMPLES
+#if GLINT_WITH(SAMPLES)
 KERNEL(resolve, glint_resolve_args)
 
 void GLINT_ENTRY(resolve_samples)(const glint_shade_args *sample, uint32_t count)

@@ -173,7 +173,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
     for (unsigned rest = hits; rest; rest &= ~m.lanes) {
         begin_lanes(args, colors, at, rest, &m);
         find_lights(&m);
-        if (GLINT_WITH_PROGRAM && m.painted)
+        if (GLINT_WITH(PROGRAM) && m.painted)
             finish_painted(&m, simple, &terms);
         else if (simple && m.factors.count <= 1 && !has_facets(m.material) && m.lanes == 0xffff)
             finish_one(&m, true);
@@ -192,7 +192,7 @@ static void shade(const glint_shade_args *args)
     light_colors colors;
     colors.of = NULL;
     for (uint32_t g = 0; g < args->group_count; g++)
-        if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
+        if (GLINT_WITH(SAMPLES) && args->sum[0][0]) {
             const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
             shade_sums(args, g, &colors, &sums);
         } else if (simple)
