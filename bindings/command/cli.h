@@ -141,21 +141,6 @@ void cli_carry_dialect(lua_State *L);
 /// Loads the dialect, if any, sets its global and passes the options on. May raise. Empties the stack.
 void cli_open_dialect(lua_State *L, const cli_options *options);
 
-// ---- file_list.c ----
-
-typedef struct cli_file_list {
-    char **files; ///< owned
-    int64_t *numbers; ///< owned; for frames: the number before each file's extension; -1: there is none
-    size_t count;
-} cli_file_list;
-
-/// Lists the files that the command's words name: the words themselves or, for one word with a number pattern, the
-/// selected files that match it. False: frames are missing, there are none, or options->output is one of them; the
-/// message names them. The caller frees the list, on failure too.
-bool cli_list_files(const cli_options *options, const glintL_selection *selection, cli_file_list *out,
-                    char message[GLINTL_MESSAGE_SIZE]);
-void cli_free_list(cli_file_list *list);
-
 // ---- sweep_points.c ----
 
 /// Reads "name=a:b:n", "name=a:b:*n" or "name=v1,v2". The name stays in `text`. The caller frees the sweep, on failure
@@ -261,6 +246,7 @@ void cli_print_params(lua_State *L, FILE *out);
 
 /// A command whose logic is in Lua modules.
 typedef struct cli_task {
+    const char *name; ///< of the command, for messages
     const cli_options *options;
     cli_output *output;
     glintL_run *run; ///< NULL: the command needs none
@@ -269,12 +255,23 @@ typedef struct cli_task {
     int code; ///< the exit code
 } cli_task;
 
-/// Runs the modules and calls the function `function` of the last one. Its argument is a table with the functions of the
-/// task, fail(code, message), print(text), say(text), nearer(word, near, candidate), and the command line. Returns the
-/// exit code.
-int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count, const char *function);
+/// Runs the modules and calls the function `run`. Its argument is a table with the functions of the task, of files.c,
+/// fail(code, message), print(text), event(text), say(text), number(text), nearer(word, near, candidate), and the
+/// command line. Returns the exit code.
+int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count);
 cli_task *cli_task_of(lua_State *L); ///< for C functions of a task
-int cli_task_fail(lua_State *L, int code, const char *message); ///< reports the failure and raises nil
+/// Reports the failure, or the signal that stopped the run, and raises nil.
+int cli_task_fail(lua_State *L, int code, const char *message);
+
+// ---- files.c ----
+
+extern const glintL_carried cli_files_module; ///< lists the files that the command's words name
+extern const luaL_Reg cli_files_functions[];
+/// Pushes the list of file names at `index` as an array, which is valid as long as the list and the array.
+char **cli_push_files(lua_State *L, int index, size_t *count);
+/// Pushes a picture read from a file, which the Lua value owns. NULL: `error` gives the reason.
+glint_picture *cli_push_picture(lua_State *L, const char *path, bool has_pixels, glint_error *error);
+int cli_picture_text(lua_State *L); ///< text(picture, keyword): returns a text entry of a picture, or nil
 
 // ---- signals.c ----
 

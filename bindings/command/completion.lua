@@ -188,8 +188,8 @@ local SHELLS <const> = { bash = bash, zsh = zsh, fish = fish }
 
 function the.run(my)
   local print_shell = SHELLS[my.script]
-  if not my.script then my.fail(2, "completion: a shell expected: bash, zsh or fish") end
-  if not print_shell then my.fail(2, "completion: bash, zsh or fish expected, got '" .. my.script .. "'") end
+  if not my.script then my.fail(2, "a shell expected: bash, zsh or fish") end
+  if not print_shell then my.fail(2, "bash, zsh or fish expected, got '" .. my.script .. "'") end
   commands, options, passes = my.tables()
   my.print(print_shell())
 end

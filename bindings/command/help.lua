@@ -61,7 +61,7 @@ local function find(name, commands, my)
     if command.name == name then return command end
     near = my.nearer(name, near, command.name)
   end
-  my.fail(2, "help: " .. name .. ": no such command; "
+  my.fail(2, name .. ": no such command; "
     .. (near and "did you mean '" .. near .. "'?" or "glint help lists them"))
 end
 
@@ -70,7 +70,7 @@ function the.run(my)
   local bit, is_help = my.command()
   local command
   if is_help and my.arguments[2] then
-    my.fail(2, "help: expected one command, got also '" .. my.arguments[2] .. "'")
+    my.fail(2, "expected one command, got also '" .. my.arguments[2] .. "'")
   elseif is_help and my.arguments[1] then
     command = find(my.arguments[1], commands, my)
   elseif bit and not is_help then

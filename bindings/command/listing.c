@@ -85,21 +85,21 @@ static int command(lua_State *L)
     return 2;
 }
 
-static int list(const cli_options *options, cli_output *output, const glintL_carried *module)
+static int list(const char *name, const cli_options *options, cli_output *output, const glintL_carried *module)
 {
     static const luaL_Reg functions[] = { { "tables", tables }, { "command", command }, { NULL, NULL } };
-    cli_task task = { .options = options, .output = output, .functions = functions };
-    return cli_run_module(&task, module, 1, "run");
+    cli_task task = { .name = name, .options = options, .output = output, .functions = functions };
+    return cli_run_module(&task, module, 1);
 }
 
 int cli_help(const cli_options *options, cli_output *output)
 {
     static const glintL_carried module = { "@help.lua", HELP_LUA, sizeof HELP_LUA };
-    return list(options, output, &module);
+    return list("help", options, output, &module);
 }
 
 int cli_completion(const cli_options *options, cli_output *output)
 {
     static const glintL_carried module = { "@completion.lua", COMPLETION_LUA, sizeof COMPLETION_LUA };
-    return list(options, output, &module);
+    return list("completion", options, output, &module);
 }

@@ -1,14 +1,26 @@
 // Runs the commands whose logic is in Lua modules, and gives the modules the command line and the output.
-#include <string.h>
+#include <stdlib.h>
 
 #include "bindings/command/cli.h"
 
 cli_task *cli_task_of(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
 
+static void report(cli_task *task, int code, const char *message)
+{
+    char full[GLINTL_MESSAGE_SIZE + 32];
+    const bool is_stopped = task->run && task->run->interrupted;
+    snprintf(full, sizeof full, "%s: %s", task->name, message);
+    if (is_stopped)
+        cli_report_error(task->output, 0, 128 + (int)task->run->interrupted, "interrupted");
+    else
+        cli_report_error(task->output, 0, code, full);
+    task->code = code;
+}
+
 int cli_task_fail(lua_State *L, int code, const char *message)
 {
     cli_task *task = cli_task_of(L);
-    task->code = cli_report_error(task->output, 0, code, message);
+    report(task, code, message);
     lua_pushnil(L);
     return lua_error(L);
 }
@@ -25,12 +37,33 @@ static int print(lua_State *L)
     return 0;
 }
 
+// event(text): prints an event, for programs.
+static int event(lua_State *L)
+{
+    cli_output *output = cli_task_of(L)->output;
+    fputs(luaL_checkstring(L, 1), output->data);
+    cli_end_line(output);
+    return 0;
+}
+
 // say(text): prints a message for people.
 static int say(lua_State *L)
 {
     if (!cli_task_of(L)->output->quiet)
         fputs(luaL_checkstring(L, 1), stderr);
     return 0;
+}
+
+// number(text): returns the number that the text is; nil if it is none.
+static int number(lua_State *L)
+{
+    const char *text = lua_tostring(L, 1);
+    char *end = NULL;
+    const double value = text ? strtod(text, &end) : 0;
+    if (!text || end == text || *end)
+        return 0;
+    lua_pushnumber(L, value);
+    return 1;
 }
 
 // nearer(word, near, candidate): returns the one closer to the misspelt word; nil if neither is close.
@@ -50,12 +83,14 @@ static void set_functions(lua_State *L, const cli_task *task, const luaL_Reg *fu
 static void push_command(lua_State *L, const void *context)
 {
     static const luaL_Reg common[] = {
-        { "fail", fail }, { "print", print }, { "say", say }, { "nearer", nearer }, { NULL, NULL }
+        { "fail", fail },     { "print", print },   { "event", event }, { "say", say },
+        { "number", number }, { "nearer", nearer }, { NULL, NULL },
     };
     const cli_task *task = context;
     const cli_options *options = task->options;
     lua_newtable(L);
     set_functions(L, task, common);
+    set_functions(L, task, cli_files_functions);
     set_functions(L, task, task->functions);
     glintL_set_flag(L, "json", options->json);
     glintL_set_text(L, "script", options->script);
@@ -68,12 +103,12 @@ static void push_command(lua_State *L, const void *context)
     lua_setfield(L, -2, "arguments");
 }
 
-int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count, const char *function)
+int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count)
 {
     char message[GLINTL_MESSAGE_SIZE];
     glintL_made_text made;
-    if (!glintL_make_text(modules, count, function, push_command, task, &made, message) && !task->code)
-        task->code = cli_report_error(task->output, 0, GLINTL_EXIT_FAILED, message);
+    if (!glintL_make_text(modules, count, "run", push_command, task, &made, message) && !task->code)
+        report(task, GLINTL_EXIT_FAILED, message);
     glintL_drop_text(&made);
     return task->code;
 }

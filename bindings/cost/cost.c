@@ -61,18 +61,6 @@ static int nearer(lua_State *L)
     return 1;
 }
 
-void *cost_push_owner(lua_State *L, size_t size, const char *type, lua_CFunction drop)
-{
-    void *owner = lua_newuserdatauv(L, size, 0);
-    memset(owner, 0, size);
-    if (luaL_newmetatable(L, type)) {
-        glintL_set_function(L, "__gc", drop);
-        glintL_set_function(L, "__close", drop);
-    }
-    lua_setmetatable(L, -2);
-    return owner;
-}
-
 // ---- The report's folder ----
 
 static bool make_folders(const char *folder)

@@ -113,9 +113,6 @@ typedef struct cost_study {
 cost_study *cost_study_of(lua_State *L); ///< the study of the running function
 /// Stops the study: fails the run, unless a signal stopped it, and raises nil.
 int cost_fail(lua_State *L, const glint_error *error);
-/// Pushes an engine object that the Lua value owns; NULL at first. `drop` frees the object of the value that is its first
-/// argument.
-void *cost_push_owner(lua_State *L, size_t size, const char *type, lua_CFunction drop);
 
 // ---- subject.c ----
 

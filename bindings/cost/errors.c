@@ -113,7 +113,7 @@ static int png(lua_State *L)
     glint_write_desc desc = { .path = "picture.png",
                               .tone = cost_study_of(L)->own->desc.tone,
                               .encode = GLINT_ENCODE_SMALL };
-    uint8_t **bytes = cost_push_owner(L, sizeof *bytes, "cost.bytes", drop_bytes);
+    uint8_t **bytes = glintL_push_owner(L, sizeof *bytes, "cost.bytes", drop_bytes);
     size_t size;
     glint_error error;
     desc.tone.bits = 8;

@@ -130,7 +130,7 @@ static int plan(lua_State *L)
 {
     lua_settop(L, 6);
     cost_study *study = cost_study_of(L);
-    planned *p = cost_push_owner(L, sizeof *p, PLAN, drop_plan);
+    planned *p = glintL_push_owner(L, sizeof *p, PLAN, drop_plan);
     glint_error error;
     cost_setting_read(L, study, &p->setting);
     return plan_setting(study, &p->setting, &p->plan, &error) ? cost_fail(L, &error) : 1;
@@ -295,7 +295,7 @@ static int drop_image(lua_State *L)
     return 0;
 }
 
-glint_image **cost_push_image(lua_State *L) { return cost_push_owner(L, sizeof(glint_image *), IMAGE, drop_image); }
+glint_image **cost_push_image(lua_State *L) { return glintL_push_owner(L, sizeof(glint_image *), IMAGE, drop_image); }
 
 const glint_image *cost_image_at(lua_State *L, int index)
 {

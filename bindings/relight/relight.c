@@ -1,288 +1,269 @@
-// glint relight FILE.exr: a picture with other strengths and colours of its lights, made from its light passes.
-#include <math.h>
+// glint relight FILE.exr: pictures with other strengths and colours of their lights, made from light passes, or a page
+// that mixes them. The Lua module reads the options; this file reads, mixes and writes images.
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/relight/relight.h"
+#include "bindings/command/cli.h"
 #include "bindings/run/film.h"
 
+#define IMAGE "glint.lights"
+
+static const unsigned char RELIGHT_LUA[] = {
+#include "bindings/relight/relight.lua.h"
+};
+static const char PAGE[] = {
+#include "bindings/relight/mixer.html.h"
+};
+
 typedef struct job {
-    const cli_options *options;
-    glintL_run *run;
-    relight_mix mix;
     glintL_render render; // tone and encoding
-    cli_file_list files;
     glintL_naming naming;
 } job;
 
-static int fail(char *message, int code, const char *path, const char *text)
+// Fails with the engine's message.
+static int fail(lua_State *L, glint_status status, const glint_error *error)
 {
-    snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s%s%.600s", path, *path ? ": " : "", text);
-    return code;
+    return cli_task_fail(L, glintL_run_exit_code(status), error->message);
 }
 
-// ---- --light ----
+// ---- Options ----
 
-// Reads a strength or a colour. False: it is neither, or the light has one already.
-static bool take_value(relight_light *light, const char *value, char *message)
+// lights(): returns the texts of --light.
+static int lights(lua_State *L)
 {
-    char *end;
-    const double strength = strtod(value, &end);
-    if (end > value && *end == '\0') {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "--light %.*s: expected a finite strength >= 0, given only once, got "
-                                               "'%.80s'",
-                 (int)light->length, light->name, value);
-        const bool good = !light->has_strength && strength >= 0 && strength < HUGE_VAL;
-        light->has_strength = true;
-        light->strength = strength;
-        return good;
-    }
-    snprintf(
-        message, GLINTL_MESSAGE_SIZE,
-        "--light %.*s: expected a strength such as 2 or a colour such as #ffd9a0 or orange, each given only once, "
-        "got '%.80s'",
-        (int)light->length, light->name, value);
-    const bool good = !light->has_color && glintL_find_color(value, strlen(value), &light->color);
-    light->has_color = true;
-    return good;
-}
-
-static relight_light *find(const relight_mix *mix, const char *name, size_t length)
-{
-    for (size_t i = 0; i < mix->count; i++)
-        if (mix->lights[i].length == length && memcmp(mix->lights[i].name, name, length) == 0)
-            return &mix->lights[i];
-    return NULL;
-}
-
-static bool read_lights(relight_mix *mix, const cli_options *options, char *message)
-{
-    mix->lights = calloc(options->light_count + 1, sizeof *mix->lights);
-    if (!mix->lights)
-        return !fail(message, 1, "", "out of memory");
+    const cli_options *options = cli_task_of(L)->options;
+    lua_newtable(L);
     for (size_t i = 0; i < options->light_count; i++) {
-        const char *text = options->lights[i], *equals = strrchr(text, '=');
-        relight_light *light = find(mix, text, (size_t)(equals - text));
-        if (!light) {
-            light = &mix->lights[mix->count++];
-            *light =
-                (relight_light) { .name = text, .length = (size_t)(equals - text), .strength = 1, .color = 0xffffff };
-        }
-        if (!take_value(light, equals + 1, message))
-            return false;
+        lua_pushstring(L, options->lights[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
-    return true;
+    return 1;
 }
 
-relight_light relight_light_at(const relight_mix *mix, const glint_image *image, size_t index)
+// color(text): returns a colour as 0xRRGGBB; nothing if the text is none.
+static int color(lua_State *L)
 {
-    const char *name = glint_image_light_pass(image, index);
-    const relight_light *light = find(mix, name, strlen(name));
-    return light ? *light : (relight_light) { .strength = 1, .color = 0xffffff };
+    size_t size;
+    uint32_t value;
+    const char *text = luaL_checklstring(L, 1, &size);
+    if (!glintL_find_color(text, size, &value))
+        return 0;
+    lua_pushinteger(L, value);
+    return 1;
 }
 
-// Checks that a file has all lights that --light names.
-static bool check_lights(const relight_mix *mix, const glint_image *image, const char *path, char *message)
+// open(count): opens the output for this many pictures.
+static int open_output(lua_State *L)
 {
-    for (size_t i = 0; i < mix->count; i++) {
-        char wanted[GLINT_NAME_SIZE + 16], all[400] = "";
-        const char *near = NULL, *name;
-        bool found = false;
-        snprintf(wanted, sizeof wanted, "%.*s", (int)mix->lights[i].length, mix->lights[i].name);
-        for (size_t k = 0; (name = glint_image_light_pass(image, k)); k++) {
-            const size_t used = strlen(all);
-            found = found || strcmp(name, wanted) == 0;
-            near = glintL_nearer(wanted, near, name);
-            if (used < 300 && strcmp(name, GLINT_LIGHT_OTHER) != 0)
-                snprintf(all + used, sizeof all - used, "%s'%s'", used ? ", " : "", name);
-        }
-        if (found)
-            continue;
-        if (near && strcmp(near, GLINT_LIGHT_OTHER) != 0)
-            snprintf(message, GLINTL_MESSAGE_SIZE,
-                     "--light %s: %.200s has no light pass of that name; did you mean '%s'?", wanted, path, near);
-        else
-            snprintf(message, GLINTL_MESSAGE_SIZE, "--light %s: %.200s has no light pass of that name; it has %s",
-                     wanted, path, all);
-        return false;
-    }
-    return true;
-}
-
-// ---- Files ----
-
-// Reads a file's lights. NULL: `*code` and the message give the reason.
-static glint_image *read_file(const job *j, const char *path, int *code, char *message)
-{
-    glint_image *image = NULL;
-    glint_error error;
-    const glint_status status = glint_lights_read(path, &image, &error);
-    if (status) {
-        *code = status == GLINT_ERR_NOMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE;
-        fail(message, *code, "", error.message);
-        return NULL;
-    }
-    if (check_lights(&j->mix, image, path, message))
-        return image;
-    *code = GLINTL_EXIT_USAGE;
-    glint_image_release(image);
-    return NULL;
-}
-
-static glint_status mix_image(const job *j, const glint_image *lights, glint_image **out, glint_error *error)
-{
-    size_t count = 0;
-    while (glint_image_light_pass(lights, count))
-        count++;
-    double(*factors)[3] = malloc((count + 1) * sizeof *factors);
-    if (!factors) {
-        error->status = GLINT_ERR_NOMEM;
-        snprintf(error->message, sizeof error->message, "out of memory");
-        return GLINT_ERR_NOMEM;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const relight_light light = relight_light_at(&j->mix, lights, i);
-        for (int c = 0; c < 3; c++)
-            factors[i][c] = light.strength * glint_srgb_decode((light.color >> (16 - 8 * c) & 255) / 255.0);
-    }
-    const glint_status status = glint_image_relight(lights, (const double(*)[3])factors, out, error);
-    free(factors);
-    return status;
-}
-
-static int write_picture(job *j, const char *file, int64_t number, char *message)
-{
-    char path[GLINTL_PATH_SIZE];
-    glint_image *image = NULL;
-    glint_error error;
-    int code = 0;
-    const glint_text text = { "Software", "glint " GLINT_VERSION };
-    glint_write_desc desc = { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = j->render.desc.tone };
-    desc.encode = j->render.encode;
-    desc.dpi = j->render.dpi;
-    desc.text = &text;
-    desc.text_count = 1;
-    glint_image *lights = read_file(j, file, &code, message);
-    if (!lights)
-        return code;
-    if (!glintL_name_file(&j->naming, number, "beauty", path)) {
-        glint_image_release(lights);
-        return fail(message, GLINTL_EXIT_USAGE, "-o", "the file name is too long");
-    }
-    glint_status status = mix_image(j, lights, &image, &error);
-    glint_image_release(lights);
-    if (!status)
-        status = glint_image_write(image, &desc, &error);
-    glint_image_release(image);
-    if (status)
-        return fail(message, glintL_run_exit_code(status), "", error.message);
-    if (j->naming.film && !glintL_film_add(j->naming.film, number, path))
-        return fail(message, GLINTL_EXIT_FAILED, "", "out of memory");
-    if (!j->naming.film && j->run->reporter.figure)
-        j->run->reporter.figure(j->run->reporter.context, "picture", path, 1);
+    const cli_task *task = cli_task_of(L);
+    glintL_run *run = task->run;
+    job *j = task->own;
+    const char *path = task->options->output;
+    char message[GLINTL_MESSAGE_SIZE];
+    glintL_render_set_text(&j->render, glintL_render_find("output"), "none", message);
+    if (glintL_film_kind_of(path, run->request.apng) == GLINTL_FILM_NONE && !glintL_name_check(path, message))
+        return cli_task_fail(L, GLINTL_EXIT_USAGE, message);
+    j->naming = (glintL_naming) { .pattern = path, .is_numbered = luaL_checkinteger(L, 1) > 1 };
+    if (!glintL_film_open(run, path, &j->render, 24, message))
+        return cli_task_fail(L, GLINTL_EXIT_USAGE, message);
+    glintL_film_take(run, &j->naming);
     return 0;
 }
 
-// Returns whether the pictures get the numbers of their files, which must ascend. Otherwise they are counted from 1.
-static bool has_numbers(const cli_file_list *list)
+// ---- Images ----
+
+static int drop_image(lua_State *L)
 {
-    for (size_t i = 0; i < list->count; i++)
-        if (list->numbers[i] < 0 || (i > 0 && list->numbers[i] <= list->numbers[i - 1]))
-            return false;
-    return true;
+    glint_image **image = lua_touserdata(L, 1);
+    glint_image_release(*image);
+    *image = NULL;
+    return 0;
 }
 
-static int write_all(job *j, char *message)
+static const glint_image *check_image(lua_State *L, int index) { return *(glint_image **)luaL_checkudata(L, index, IMAGE); }
+
+// read(path): returns a file's lights as an image, their names, and the name of the pass of all other lights.
+static int read_image(lua_State *L)
 {
-    const bool numbered = has_numbers(&j->files);
-    int code = 0;
-    for (size_t i = 0; i < j->files.count && !code && !j->run->interrupted; i++)
-        code = write_picture(j, j->files.files[i], numbered ? j->files.numbers[i] : (int64_t)i + 1, message);
-    if (code || j->run->interrupted || !j->naming.film)
-        return code;
-    if (glintL_films_finish(j->run))
+    glint_error error;
+    glint_image **image = glintL_push_owner(L, sizeof *image, IMAGE, drop_image);
+    const glint_status status = glint_lights_read(luaL_checkstring(L, 1), image, &error);
+    const char *name;
+    if (status)
+        return cli_task_fail(L, status == GLINT_ERR_NOMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, error.message);
+    lua_newtable(L);
+    for (size_t i = 0; (name = glint_image_light_pass(*image, i)); i++) {
+        lua_pushstring(L, name);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_pushliteral(L, GLINT_LIGHT_OTHER);
+    return 3;
+}
+
+// Returns the factors of the lights by `mix`, the strength and colour of each, at `index`.
+static double (*push_factors(lua_State *L, int index))[3]
+{
+    const size_t count = (size_t)luaL_len(L, index);
+    double(*factors)[3] = lua_newuserdatauv(L, (count + 1) * sizeof *factors, 0);
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        lua_getfield(L, -1, "strength");
+        lua_getfield(L, -2, "color");
+        const lua_Integer value = lua_tointeger(L, -1);
+        for (int c = 0; c < 3; c++)
+            factors[i][c] = lua_tonumber(L, -2) * glint_srgb_decode((value >> (16 - 8 * c) & 255) / 255.0);
+        lua_pop(L, 3);
+    }
+    return factors;
+}
+
+// write(image, number, mix): writes a picture. Ends the module if a signal has stopped the run.
+static int write_picture(lua_State *L)
+{
+    const cli_task *task = cli_task_of(L);
+    const job *j = task->own;
+    const lua_Integer number = luaL_checkinteger(L, 2);
+    char path[GLINTL_PATH_SIZE];
+    glint_error error;
+    const glint_text text = { "Software", "glint " GLINT_VERSION };
+    const glint_write_desc desc = {
+        .path = path, .pass = GLINT_PASS_BEAUTY, .tone = j->render.desc.tone, .encode = j->render.encode,
+        .dpi = j->render.dpi, .text = &text, .text_count = 1,
+    };
+    if (!glintL_name_file(&j->naming, number, "beauty", path))
+        return cli_task_fail(L, GLINTL_EXIT_USAGE, "-o: the file name is too long");
+    const double(*factors)[3] = (const double(*)[3])push_factors(L, 3);
+    glint_image **image = glintL_push_owner(L, sizeof *image, IMAGE, drop_image);
+    glint_status status = glint_image_relight(check_image(L, 1), factors, image, &error);
+    if (!status)
+        status = glint_image_write(*image, &desc, &error);
+    glint_image_release(*image);
+    *image = NULL;
+    if (status)
+        return fail(L, status, &error);
+    if (j->naming.film && !glintL_film_add(j->naming.film, number, path))
+        return cli_task_fail(L, GLINTL_EXIT_FAILED, "out of memory");
+    if (!j->naming.film)
+        task->run->reporter.figure(task->run->reporter.context, "picture", path, 1);
+    return task->run->interrupted ? cli_task_fail(L, 0, "interrupted") : 0;
+}
+
+// finish(): makes the film, if the output is one.
+static int finish(lua_State *L)
+{
+    const cli_task *task = cli_task_of(L);
+    if (!((const job *)task->own)->naming.film || glintL_films_finish(task->run))
         return 0;
-    fail(message, 0, "", j->run->message);
-    return j->run->exit_code;
+    return cli_task_fail(L, task->run->exit_code, task->run->message);
 }
 
-// Checks the lights of one file before anything is written.
-static int check_files(const job *j, char *message)
+// ---- The page ----
+
+// tone(): returns the exposure and the number of the tone curve, and whether the rest is as the page shows it.
+static int tone(lua_State *L)
 {
-    int code = 0;
-    glint_image *image = read_file(j, j->files.files[0], &code, message);
-    glint_image_release(image);
-    return code;
+    const glint_tone_desc *own = &((const job *)cli_task_of(L)->own)->render.desc.tone;
+    const glint_tone_desc plain = glint_tone_desc_default();
+    lua_pushnumber(L, own->exposure);
+    lua_pushinteger(L, (lua_Integer)own->curve + 1);
+    lua_pushboolean(L, own->bits == plain.bits && own->transfer == plain.transfer && own->rounding == plain.rounding);
+    return 3;
 }
 
-static int write_page(const job *j, char *message)
+// steps(curve): returns the least light for each pixel value 1 .. 255, as the bits of a float.
+static int steps(lua_State *L)
 {
-    int code = 0;
-    if (j->files.count != 1)
-        return fail(message, GLINTL_EXIT_USAGE, "", "a page shows one file; expected only one");
-    glint_image *image = read_file(j, j->files.files[0], &code, message);
-    if (image)
-        code = relight_write_page(j->options, &j->mix, j->files.files[0], image, message);
-    glint_image_release(image);
-    return code;
+    glint_tone_desc desc = glint_tone_desc_default();
+    float least[255];
+    desc.curve = (glint_tone_curve)(luaL_checkinteger(L, 1) - 1);
+    glint_tone_steps(&desc, least);
+    lua_createtable(L, 255, 0);
+    for (int i = 0; i < 255; i++) {
+        uint32_t bits;
+        memcpy(&bits, &least[i], sizeof bits);
+        lua_pushinteger(L, bits);
+        lua_rawseti(L, -2, i + 1);
+    }
+    return 1;
+}
+
+// decode(value): returns the light of an sRGB value.
+static int decode(lua_State *L)
+{
+    lua_pushnumber(L, glint_srgb_decode(luaL_checknumber(L, 1)));
+    return 1;
+}
+
+// page(): returns the template, the version, and the title if one is given.
+static int page(lua_State *L)
+{
+    lua_pushlstring(L, PAGE, sizeof PAGE);
+    lua_pushliteral(L, GLINT_VERSION);
+    lua_pushstring(L, cli_task_of(L)->options->title);
+    return 3;
+}
+
+// Appends the light passes as an .exr of floats, in base64, piece by piece.
+static glint_status append_pixels(lua_State *L, glint_draft *draft, const glint_image *image, glint_error *error)
+{
+    enum { PIECE = 3 << 18 };
+    char *text = lua_newuserdatauv(L, PIECE / 3 * 4 + 4, 0);
+    uint8_t *data = NULL;
+    size_t size = 0;
+    const glint_write_desc desc = { .path = "lights.exr", .pass = GLINT_PASS_LIGHT, .tone = glint_tone_desc_default() };
+    glint_status status = glint_image_to_bytes(image, &desc, &data, &size, error);
+    for (size_t at = 0; at < size && !status; at += PIECE) {
+        const size_t piece = size - at < PIECE ? size - at : PIECE;
+        status = glint_draft_append(draft, text, glintL_base64(data + at, piece, text), error);
+    }
+    free(data);
+    return status;
+}
+
+static int drop_draft(lua_State *L)
+{
+    glint_draft **draft = lua_touserdata(L, 1);
+    glint_draft_destroy(*draft);
+    *draft = NULL;
+    return 0;
+}
+
+// write_page(before, image, after): writes the page, whose pixels are between these texts.
+static int write_page(lua_State *L)
+{
+    size_t before, after;
+    const char *head = luaL_checklstring(L, 1, &before), *tail = luaL_checklstring(L, 3, &after);
+    glint_error error;
+    glint_draft **draft = glintL_push_owner(L, sizeof *draft, "glint.draft", drop_draft);
+    glint_status status = glint_draft_create(cli_task_of(L)->options->output, draft, &error);
+    if (!status)
+        status = glint_draft_append(*draft, head, before, &error);
+    if (!status)
+        status = append_pixels(L, *draft, check_image(L, 2), &error);
+    if (!status)
+        status = glint_draft_append(*draft, tail, after, &error);
+    if (!status)
+        status = glint_draft_finish(*draft, &error);
+    return status ? fail(L, status, &error) : 0;
 }
 
 // ---- The command ----
 
-static bool is_page(const char *path)
-{
-    const size_t length = strlen(path);
-    return length > 5 && strcmp(path + length - 5, ".html") == 0;
-}
-
-// Reads the name in -o. False: the message says what is wrong.
-static bool open_output(job *j, char *message)
-{
-    const char *path = j->options->output;
-    glintL_render_set_text(&j->render, glintL_render_find("output"), "none", message);
-    if (!path || strcmp(path, "none") == 0)
-        return !fail(message, 1, "", "expected -o with a picture, a film or a page NAME.html");
-    if (is_page(path))
-        return true;
-    if (glintL_film_kind_of(path, j->run->request.apng) == GLINTL_FILM_NONE && !glintL_name_check(path, message))
-        return false;
-    j->naming = (glintL_naming) { .pattern = path, .is_numbered = j->files.count > 1 };
-    if (!glintL_film_open(j->run, path, &j->render, 24, message))
-        return false;
-    glintL_film_take(j->run, &j->naming);
-    return true;
-}
-
-static int relight(job *j, char *message)
-{
-    if (!read_lights(&j->mix, j->options, message))
-        return GLINTL_EXIT_USAGE;
-    if (!cli_list_files(j->options, &j->run->request.selection, &j->files, message) || !open_output(j, message))
-        return GLINTL_EXIT_USAGE;
-    if (is_page(j->options->output))
-        return write_page(j, message);
-    const int code = check_files(j, message);
-    return code ? code : write_all(j, message);
-}
-
 int cli_relight(cli_options *options, cli_output *output, glintL_run *run)
 {
-    char message[GLINTL_MESSAGE_SIZE] = "", full[GLINTL_MESSAGE_SIZE + 32];
-    job j = { .options = options, .run = run, .render = glintL_render_default() };
+    static const luaL_Reg functions[] = {
+        { "lights", lights }, { "color", color },         { "open", open_output },  { "read", read_image },
+        { "page", page },     { "write", write_picture }, { "finish", finish },     { "tone", tone },
+        { "steps", steps },   { "decode", decode },       { "write_page", write_page }, { NULL, NULL },
+    };
+    const glintL_carried modules[] = { cli_files_module, { "@relight.lua", RELIGHT_LUA, sizeof RELIGHT_LUA } };
+    job j = { .render = glintL_render_default() };
+    cli_task task = { "relight", options, output, run, functions, &j, 0 };
     glintL_run_apply(run, &j.render);
-    j.mix.tone = j.render.desc.tone;
     if (!output->quiet)
         output->progress = cli_progress_create(output->color);
-    const int code = relight(&j, message);
+    cli_run_module(&task, modules, 2);
     cli_progress_destroy(output->progress);
     output->progress = NULL;
-    if (code && !run->interrupted) {
-        snprintf(full, sizeof full, "relight: %s", message);
-        cli_report_error(output, 0, code, full);
-    } else if (run->interrupted) {
-        cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
-    }
-    cli_free_list(&j.files);
-    free(j.mix.lights);
-    return code;
+    return task.code;
 }

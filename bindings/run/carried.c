@@ -129,6 +129,18 @@ glint_status glintL_write_text(const char *path, const void *text, size_t size, 
     return status;
 }
 
+void *glintL_push_owner(lua_State *L, size_t size, const char *type, lua_CFunction drop)
+{
+    void *owner = lua_newuserdatauv(L, size, 0);
+    memset(owner, 0, size);
+    if (luaL_newmetatable(L, type)) {
+        glintL_set_function(L, "__gc", drop);
+        glintL_set_function(L, "__close", drop);
+    }
+    lua_setmetatable(L, -2);
+    return owner;
+}
+
 void glintL_copy_value(lua_State *from, int index, lua_State *to)
 {
     size_t size = 0;

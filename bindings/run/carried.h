@@ -31,6 +31,9 @@ glint_status glintL_write_text(const char *path, const void *text, size_t size, 
 /// Pushes on `to` a copy of the value at `index` of `from`, including tables and their contents; other objects become
 /// nil.
 void glintL_copy_value(lua_State *from, int index, lua_State *to);
+/// Pushes an engine object that the Lua value owns; NULL at first. `drop` frees the object of the value that is its first
+/// argument.
+void *glintL_push_owner(lua_State *L, size_t size, const char *type, lua_CFunction drop);
 /// Writes base64 to `out`, which needs 4 bytes for every 3 of `size`, rounded up. Returns how many were written.
 size_t glintL_base64(const uint8_t *from, size_t size, char *out);
 
