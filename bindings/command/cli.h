@@ -246,7 +246,7 @@ void cli_print_params(lua_State *L, FILE *out);
 
 /// A command whose logic is in Lua modules.
 typedef struct cli_task {
-    const char *name; ///< of the command, for messages
+    const char *name; ///< of the command, which begins messages; NULL: messages begin otherwise
     const cli_options *options;
     cli_output *output;
     glintL_run *run; ///< NULL: the command needs none
@@ -255,7 +255,7 @@ typedef struct cli_task {
     int code; ///< the exit code
 } cli_task;
 
-/// Runs the modules and calls the function `run`. Its argument is a table with the functions of the task, of files.c,
+/// Runs the modules and calls the function `run`, which returns the exit code or nothing. Its argument is a table with the functions of the task, of files.c,
 /// fail(code, message), print(text), event(text), say(text), number(text), nearer(word, near, candidate), and the
 /// command line. Returns the exit code.
 int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count);

@@ -9,7 +9,7 @@ static void report(cli_task *task, int code, const char *message)
 {
     char full[GLINTL_MESSAGE_SIZE + 32];
     const bool is_stopped = task->run && task->run->interrupted;
-    snprintf(full, sizeof full, "%s: %s", task->name, message);
+    snprintf(full, sizeof full, "%s%s%s", task->name ? task->name : "", task->name ? ": " : "", message);
     if (is_stopped)
         cli_report_error(task->output, 0, 128 + (int)task->run->interrupted, "interrupted");
     else
@@ -94,6 +94,7 @@ static void push_command(lua_State *L, const void *context)
     set_functions(L, task, task->functions);
     glintL_set_flag(L, "json", options->json);
     glintL_set_text(L, "script", options->script);
+    glintL_set_text(L, "file", options->file);
     glintL_set_text(L, "output", options->output);
     lua_createtable(L, options->argument_count, 0);
     for (int i = 0; i < options->argument_count; i++) {
@@ -107,7 +108,9 @@ int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count)
 {
     char message[GLINTL_MESSAGE_SIZE];
     glintL_made_text made;
-    if (!glintL_make_text(modules, count, "run", push_command, task, &made, message) && !task->code)
+    if (glintL_make_text(modules, count, "run", push_command, task, &made, message))
+        task->code = (int)lua_tointeger(made.state, -1);
+    else if (!task->code)
         report(task, GLINTL_EXIT_FAILED, message);
     glintL_drop_text(&made);
     return task->code;
