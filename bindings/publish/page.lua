@@ -2,6 +2,43 @@
 -- figure into other pages.
 local the = ...
 
+local FILE_BYTES_MAX <const> = 64 << 20 -- limit of one file that the script reads
+
+-- Returns the bytes of a file; nil and the reason if it cannot be read.
+local function read(path)
+  local file <close>, why = io.open(path, "rb")
+  if not file then return nil, why end
+  if file:seek "end" > FILE_BYTES_MAX then return nil, path .. ": File too large" end -- a folder has no end
+  file:seek "set"
+  return file:read "a"
+end
+
+local function must_read(path)
+  local bytes, why = read(path)
+  return bytes or error(why, 0)
+end
+
+-- Reads a file of the folder made by `make web`: GLINT_WEB, web/ next to the command, or ../share/glint/web.
+local function read_part(my, name)
+  local given, program = os.getenv "GLINT_WEB", my.program
+  if given and given ~= "" then return (read(given .. "/" .. name)) end
+  return program and (read(program .. "web/" .. name) or read(program .. "../share/glint/web/" .. name))
+end
+
+-- Reads the engine for pages, renders the frame, and reads the script's files.
+local function make_page(my)
+  local wasm, engine = read_part(my, "glint.wasm.gz"), read_part(my, "publish.js")
+  if not (wasm and engine) then
+    error(my.who .. ": the engine for pages is missing (glint.wasm.gz, publish.js). Build it with `make web`, then run "
+      .. "build/glint, or install glint again", 0)
+  end
+  local page = my.render()
+  page.wasm, page.engine, page.source = wasm, engine, must_read(page.path)
+  page.folder = page.path:match "^.*/" or ""
+  for name, path in pairs(page.files) do page.files[name] = must_read(path) end
+  return page
+end
+
 local function html(text)
   return (text:gsub("[&<>\"']", { ["&"] = "&amp;", ["<"] = "&lt;", [">"] = "&gt;", ['"'] = "&quot;", ["'"] = "&#39;" }))
 end
@@ -74,7 +111,7 @@ local function fill(template, values)
 end
 
 -- Returns the picture with its controls and everything that they need.
-function the.live(page)
+local function figure_of(page)
   check_controls(page)
   local files, same = files_of(page)
   return fill(FIGURE, {
@@ -86,9 +123,12 @@ function the.live(page)
   })
 end
 
-function the.publish(page)
+function the.live(my) return figure_of(make_page(my)) end
+
+function the.publish(my)
+  local page = make_page(my)
   return fill(page.template, {
-    VERSION = page.version, TITLE = html(page.title), WIDTH = page.width, FIGURE = the.live(page),
+    VERSION = page.version, TITLE = html(page.title), WIDTH = page.width, FIGURE = figure_of(page),
     SOURCE = page.shows_source and listing(page.source) or "",
   })
 end

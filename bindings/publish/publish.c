@@ -12,7 +12,6 @@
 #include "bindings/run/system.h"
 
 #define FILES_MAX 256
-#define FILE_BYTES_MAX ((size_t)64 << 20) // limit of one file that the script reads
 
 static const char TRACK_LUA[] = {
 #include "bindings/watch/track.lua.h"
@@ -37,8 +36,8 @@ typedef struct publication {
     glint_image *image; // picture of the frame
     glintL_render render;
     int64_t frame;
-    uint8_t *poster, *wasm, *engine; // owned
-    size_t poster_size, wasm_size, engine_size;
+    uint8_t *poster; // owned
+    size_t poster_size;
 } publication;
 
 // ---- The files of the script ----
@@ -129,135 +128,89 @@ static bool render(publication *p)
     return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", error.message);
 }
 
-// ---- The engine for the page ----
-
-// Reads a whole file. NULL: errno gives the reason.
-static uint8_t *read_file(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rbe");
-    struct stat info;
-    if (!file)
-        return NULL;
-    uint8_t *bytes = NULL;
-    errno = EFBIG;
-    if (fstat(fileno(file), &info) == 0 && S_ISREG(info.st_mode) && (uintmax_t)info.st_size <= FILE_BYTES_MAX)
-        bytes = malloc((size_t)info.st_size + 1);
-    if (bytes && (*size = fread(bytes, 1, (size_t)info.st_size, file)) < (size_t)info.st_size) {
-        free(bytes);
-        bytes = NULL;
-        errno = EIO;
-    }
-    fclose(file);
-    return bytes;
-}
-
-// Reads a file of the folder made by `make web`: GLINT_WEB, web/ next to the command, or ../share/glint/web.
-static uint8_t *read_part(const publication *p, const char *name, size_t *size)
-{
-    char folder[GLINTL_PATH_SIZE], path[GLINTL_PATH_SIZE + 64];
-    const char *given = getenv("GLINT_WEB");
-    if (given && *given) {
-        snprintf(path, sizeof path, "%.4000s/%s", given, name);
-        return read_file(path, size);
-    }
-    if (!glintL_program_folder(p->options->program, folder, sizeof folder))
-        return NULL;
-    snprintf(path, sizeof path, "%.4000sweb/%s", folder, name);
-    uint8_t *bytes = read_file(path, size);
-    if (bytes)
-        return bytes;
-    snprintf(path, sizeof path, "%.4000s../share/glint/web/%s", folder, name);
-    return read_file(path, size);
-}
-
-static bool read_engine(publication *p)
-{
-    p->wasm = read_part(p, "glint.wasm.gz", &p->wasm_size);
-    p->engine = p->wasm ? read_part(p, "publish.js", &p->engine_size) : NULL;
-    return p->engine ||
-           glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0,
-                           "%s: the engine for pages is missing (glint.wasm.gz, publish.js). Build it with `make "
-                           "web`, then run build/glint, or install glint again",
-                           p->who);
-}
-
 // ---- The page ----
 
-static void set_text(lua_State *L, const char *name, const void *bytes, size_t size)
+// Pushes the values of the parameters; raises if --set names an unknown one.
+static int push_params(lua_State *L)
 {
-    lua_pushlstring(L, bytes, size);
-    lua_setfield(L, -2, name);
+    if (glintL_push_unknown_set(L))
+        return lua_error(L);
+    glintL_push_params(L);
+    return 1;
 }
 
-// Pushes the bytes of a file. May raise.
-static void push_file(lua_State *L, const char *path)
+// Runs the script, and leaves its parameters on top of its stack. False: the run has failed.
+static bool run_script(publication *p)
 {
-    size_t size = 0;
-    uint8_t *bytes = read_file(path, &size);
-    if (!bytes)
-        luaL_error(L, "%s: %s", path, strerror(errno));
-    lua_pushlstring(L, (const char *)bytes, size);
-    free(bytes);
+    if (!render(p))
+        return false;
+    lua_State *L = p->script.state;
+    lua_settop(L, 0);
+    lua_pushcfunction(L, push_params);
+    return lua_pcall(L, 0, 1, 0) == LUA_OK || glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
 }
 
-static void push_page(lua_State *L, const void *context)
+static void add_files(lua_State *L, const publication *p)
 {
-    const publication *p = context;
-    lua_newtable(L);
-    glintL_copy_value(p->script.state, -1, L);
-    lua_setfield(L, -2, "params");
-    glintL_set_text(L, "script", p->run->script);
-    lua_pushlstring(L, p->options->script, (size_t)(glintL_base_name(p->options->script) - p->options->script));
-    lua_setfield(L, -2, "folder");
-    push_file(L, p->options->script);
-    lua_setfield(L, -2, "source");
-    glintL_set_text(L, "title", p->options->title ? p->options->title : p->run->script);
-    glintL_set_text(L, "controls", p->options->controls);
-    glintL_set_flag(L, "shows_source", p->options->shows_source);
-    lua_pushliteral(L, GLINT_VERSION);
-    lua_setfield(L, -2, "version");
-    glintL_set_whole(L, "width", glint_image_width(p->image));
-    glintL_set_whole(L, "height", glint_image_height(p->image));
-    glintL_set_whole(L, "frame", p->frame);
-    set_text(L, "template", PAGE_HTML, sizeof PAGE_HTML);
-    set_text(L, "poster", p->poster, p->poster_size);
-    set_text(L, "wasm", p->wasm, p->wasm_size);
-    set_text(L, "engine", p->engine, p->engine_size);
     lua_newtable(L);
     for (size_t i = 0; i < p->file_count; i++) {
-        push_file(L, p->files[i].path);
+        lua_pushstring(L, p->files[i].path);
         lua_setfield(L, -2, p->files[i].name);
     }
     lua_setfield(L, -2, "files");
 }
 
-typedef struct making {
-    const publication *of;
-    const char *what; // the function of page.lua: publish or live
-    glintL_made_text text;
-} making;
-
-static int make_text(lua_State *L)
+// render(): renders the frame. Returns the page's values. Raises nil if the run has failed.
+static int push_page(lua_State *L)
 {
-    making *job = lua_touserdata(L, 1);
-    char message[GLINTL_MESSAGE_SIZE];
-    if (glintL_push_unknown_set(L))
+    publication *p = lua_touserdata(L, lua_upvalueindex(1));
+    if (!run_script(p)) {
+        lua_pushnil(L);
         return lua_error(L);
-    glintL_push_params(L);
-    const bool is_made = glintL_make_text(&MODULE, 1, job->what, push_page, job->of, &job->text, message);
-    return is_made ? 0 : luaL_error(L, "%s", message);
+    }
+    lua_newtable(L);
+    glintL_copy_value(p->script.state, -1, L);
+    lua_setfield(L, -2, "params");
+    glintL_set_text(L, "script", p->run->script);
+    glintL_set_text(L, "path", p->options->script);
+    glintL_set_text(L, "title", p->options->title ? p->options->title : p->run->script);
+    glintL_set_text(L, "controls", p->options->controls);
+    glintL_set_flag(L, "shows_source", p->options->shows_source);
+    glintL_set_text(L, "version", GLINT_VERSION);
+    glintL_set_whole(L, "width", glint_image_width(p->image));
+    glintL_set_whole(L, "height", glint_image_height(p->image));
+    glintL_set_whole(L, "frame", p->frame);
+    lua_pushlstring(L, PAGE_HTML, sizeof PAGE_HTML);
+    lua_setfield(L, -2, "template");
+    lua_pushlstring(L, (const char *)p->poster, p->poster_size);
+    lua_setfield(L, -2, "poster");
+    add_files(L, p);
+    return 1;
 }
 
-// Runs the script and makes the page, or only its figure. The caller drops the text, on failure too.
-static bool make(publication *p, making *job)
+// Pushes the argument of the functions of page.lua.
+static void push_tools(lua_State *L, const void *context)
 {
-    if (!read_engine(p) || !render(p))
-        return false;
-    lua_State *L = p->script.state;
-    lua_settop(L, 0);
-    lua_pushcfunction(L, make_text);
-    lua_pushlightuserdata(L, job);
-    return lua_pcall(L, 1, 0, 0) == LUA_OK || glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
+    const publication *p = context;
+    char folder[GLINTL_PATH_SIZE];
+    lua_newtable(L);
+    lua_pushlightuserdata(L, (void *)p);
+    lua_pushcclosure(L, push_page, 1);
+    lua_setfield(L, -2, "render");
+    glintL_set_text(L, "who", p->who);
+    if (glintL_program_folder(p->options->program, folder, sizeof folder))
+        glintL_set_text(L, "program", folder);
+}
+
+// Runs the script and makes the page, or only its figure ("live"). The caller drops the text, on failure too.
+static bool make(publication *p, const char *what, glintL_made_text *text)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    if (glintL_make_text(&MODULE, 1, what, push_tools, p, text, message))
+        return true;
+    if (!p->run->exit_code && !p->run->interrupted)
+        glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s", message);
+    return false;
 }
 
 static void destroy(publication *p)
@@ -269,21 +222,19 @@ static void destroy(publication *p)
         free(p->files[i].name);
     }
     free(p->poster);
-    free(p->wasm);
-    free(p->engine);
 }
 
 int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
 {
     publication p = { .options = options, .who = "publish", .run = run };
-    making page = { .of = &p, .what = "publish" };
+    glintL_made_text page = { .state = NULL };
     glint_error error;
     const char *ending = options->output ? strrchr(options->output, '.') : NULL;
     if (!ending || strcmp(ending, ".html") != 0)
         return cli_report_error(output, 0, GLINTL_EXIT_USAGE, "publish: expected -o PAGE.html");
-    if (make(&p, &page) && glintL_write_text(options->output, page.text.text, page.text.size, &error) != GLINT_OK)
+    if (make(&p, "publish", &page) && glintL_write_text(options->output, page.text, page.size, &error) != GLINT_OK)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s", error.message);
-    glintL_drop_text(&page.text);
+    glintL_drop_text(&page);
     destroy(&p);
     if (run->exit_code)
         cli_report_error(output, 0, run->exit_code, run->message);
@@ -296,7 +247,7 @@ char *cli_live(const cli_options *options, const glintL_request *request, int *c
 {
     cli_options own = *options;
     publication p = { .options = &own, .who = "--live", .run = glintL_run_create() };
-    making figure = { .of = &p, .what = "live" };
+    glintL_made_text figure = { .state = NULL };
     char *text = NULL;
     *code = GLINTL_EXIT_FAILED;
     snprintf(message, GLINTL_MESSAGE_SIZE, "--live: out of memory");
@@ -308,13 +259,13 @@ char *cli_live(const cli_options *options, const glintL_request *request, int *c
     snprintf(p.run->script, sizeof p.run->script, "%s", glintL_base_name(own.script));
     p.run->request.sets = request->sets;
     p.run->request.set_count = request->set_count;
-    if (make(&p, &figure))
-        text = strdup(figure.text.text);
+    if (make(&p, "live", &figure))
+        text = strdup(figure.text);
     if (p.run->exit_code) {
         *code = p.run->exit_code;
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s", p.run->message);
     }
-    glintL_drop_text(&figure.text);
+    glintL_drop_text(&figure);
     destroy(&p);
     p.run->request.sets = NULL;
     glintL_run_destroy(p.run);
