@@ -253,27 +253,26 @@ $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
 # Files embedded in the command, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
-CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/% bindings/cost/%,$(wildcard bindings/*/*.lua))))
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/% bindings/cost/% bindings/run/%,$(wildcard bindings/*/*.lua))))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
-$(BINDINGS_OBJ): | $(CARRIED)
 
 # Lua modules as C, for programs without files: { name, bytes, size } each. Comments become empty lines.
 $(BUILD)/bindings/web/library.h: $(sort $(wildcard scripts/lib/glint/*.lua))
 $(BUILD)/bindings/command/dialect.h: scripts/lib/gr.lua $(sort $(wildcard scripts/lib/gr/*.lua))
 $(BUILD)/bindings/cost/modules.h: $(sort $(wildcard bindings/cost/*.lua))
-$(BUILD)/bindings/web/library.h $(BUILD)/bindings/command/dialect.h $(BUILD)/bindings/cost/modules.h:
+$(BUILD)/bindings/run/modules.h: $(sort $(wildcard bindings/run/*.lua))
+MODULES := $(patsubst %,$(BUILD)/bindings/%.h,web/library command/dialect cost/modules run/modules)
+$(MODULES): Makefile
 	@mkdir -p $(@D)
-	@{ for file in $^; do echo "static const unsigned char $$(basename $$file .lua)_lua[] = {"; \
+	@{ for file in $(filter %.lua,$^); do echo "static const unsigned char $$(basename $$file .lua)_lua[] = {"; \
 	       sed 's/^ *--.*//' $$file | od -An -v -tu1 | sed 's/[0-9][0-9]*/&,/g'; echo '};'; done; \
-	   echo 'static const module LIBRARY[] = {'; \
-	   for file in $^; do name=$${file#scripts/lib/}; name=$${name%.lua}; bytes=$$(basename $$file .lua)_lua; \
+	   echo 'static const glintL_carried LIBRARY[] = {'; \
+	   for file in $(filter %.lua,$^); do name=$${file#scripts/lib/}; name=$${name%.lua}; bytes=$$(basename $$file .lua)_lua; \
 	       echo "{ \"$$(echo $$name | tr / .)\", $$bytes, sizeof $$bytes },"; done; \
 	   echo '};'; } > $@
-$(BUILD)/bindings/web/web.o: | $(BUILD)/bindings/web/library.h
-$(BUILD)/bindings/command/dialect.o: | $(BUILD)/bindings/command/dialect.h
-$(BUILD)/bindings/cost/cost.o: | $(BUILD)/bindings/cost/modules.h
+$(BINDINGS_OBJ): | $(CARRIED) $(MODULES)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)

@@ -2,49 +2,13 @@
 #include <string.h>
 
 #include "bindings/command/cli.h"
-
-typedef struct module { // a carried Lua module
-    const char *name;
-    const unsigned char *text;
-    size_t size;
-} module;
+#include "bindings/run/carried.h"
 
 #include "bindings/command/dialect.h" // LIBRARY
 
-typedef struct code_buffer {
-    luaL_Buffer buffer;
-    bool begun; // luaL_buffinit was called: at the first write, as lua_dump needs the function on top until then
-} code_buffer;
-
-static int add_code(lua_State *L, const void *bytes, size_t size, void *context)
-{
-    code_buffer *code = context;
-    if (!code->begun)
-        luaL_buffinit(L, &code->buffer);
-    code->begun = true;
-    luaL_addlstring(&code->buffer, bytes, size);
-    return 0;
-}
-
-// Removes line numbers from the module, so that errors and warnings name the nearest line of the scene.
-static void strip(lua_State *L)
-{
-    code_buffer code = { .begun = false };
-    size_t size;
-    if (lua_dump(L, add_code, &code, true))
-        luaL_error(L, "out of memory");
-    luaL_pushresult(&code.buffer);
-    const char *bytes = lua_tolstring(L, -1, &size);
-    if (luaL_loadbufferx(L, bytes, size, "=gr", "b") != LUA_OK)
-        lua_error(L);
-}
-
 static int load_module(lua_State *L)
 {
-    const module *which = lua_touserdata(L, lua_upvalueindex(1));
-    if (luaL_loadbufferx(L, (const char *)which->text, which->size, which->name, "t") != LUA_OK)
-        return lua_error(L);
-    strip(L);
+    glintL_load_stripped(L, lua_touserdata(L, lua_upvalueindex(1)));
     lua_pushvalue(L, 1);
     lua_call(L, 1, 1);
     return 1;

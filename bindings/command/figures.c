@@ -65,7 +65,26 @@ static double dpi_of(const cli_options *options)
     return text ? strtod(text, NULL) : 0; // checked when the option was read
 }
 
-// sheet(files, names, formats, colorbar): makes the sheet.
+// Adds the options to the description of the sheet, on top of the stack.
+static void add_options(lua_State *L, const cli_options *options)
+{
+    glintL_set_text(L, "path", options->output);
+    glintL_set_text(L, "label", options->label);
+    glintL_set_text(L, "title", options->title);
+    if (options->columns)
+        glintL_set_whole(L, "columns", options->columns);
+    if (options->difference)
+        glintL_set_whole(L, "difference", options->difference);
+    if (options->gain > 0)
+        glintL_set_number(L, "gain", options->gain);
+    if (options->label_size > 0)
+        glintL_set_number(L, "size", options->label_size);
+    glintL_set_number(L, "dpi", dpi_of(options));
+    glintL_set_flag(L, "transparent", options->transparent);
+    glintL_set_flag(L, "mixes", options->request.force);
+}
+
+// sheet({ files, names, formats, colorbar }): makes the sheet.
 static int sheet(lua_State *L)
 {
     const cli_task *task = cli_task_of(L);
@@ -73,25 +92,25 @@ static int sheet(lua_State *L)
     char message[GLINTL_MESSAGE_SIZE];
     int code = GLINTL_EXIT_FAILED;
     glint_overlay_desc bar;
-    glintL_sheet made = {
-        .path = options->output, .label = options->label, .names = lua_tostring(L, 2), .formats = lua_tostring(L, 3),
-        .title = options->title, .columns = options->columns, .difference = options->difference,
-        .gain = options->gain, .size = options->label_size, .transparent = options->transparent,
-        .dpi = dpi_of(options), .mixes = options->request.force,
-    };
-    if (lua_istable(L, 4)) {
-        bar = read_colorbar(L, 4);
-        made.colorbar = &bar;
+    lua_settop(L, 1);
+    if (lua_getfield(L, 1, "colorbar") == LUA_TTABLE) {
+        bar = read_colorbar(L, 2);
+        lua_pushlightuserdata(L, &bar);
+        lua_setfield(L, 1, "colorbar");
     }
-    made.files = cli_push_files(L, 1, &made.count);
+    lua_getfield(L, 1, "files");
+    const size_t count = lua_rawlen(L, -1);
     char *live = options->is_live ? cli_live(options, &options->request, &code, message) : NULL;
-    made.live = live;
-    if (live || !options->is_live)
-        code = glintL_sheet_make(&made, message);
+    if (options->is_live && !live)
+        return cli_task_fail(L, code, message);
+    lua_settop(L, 1);
+    add_options(L, options);
+    glintL_set_text(L, "live", live);
     free(live);
+    code = glintL_sheet_make(L, message);
     if (code)
         return cli_task_fail(L, code, message);
-    cli_reporter(task->output).figure(task->output, "sheet", options->output, (int64_t)made.count);
+    cli_reporter(task->output).figure(task->output, "sheet", options->output, (int64_t)count);
     return 0;
 }
 

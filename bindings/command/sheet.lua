@@ -36,5 +36,6 @@ function the.run(my)
   if my.lacks_live_script() then my.fail(2, "expected --live=SCRIPT with the script of the pictures") end
   local bar, names, format = my.texts()
   local colorbar = bar and read_colorbar(my, bar)
-  my.sheet(the.files(my), lines_of(names, true), lines_of(format, format and format:find "^[^=%%]*="), colorbar)
+  my.sheet { files = the.files(my), names = lines_of(names, true), colorbar = colorbar,
+    formats = lines_of(format, format and format:find "^[^=%%]*=") }
 end

@@ -182,5 +182,6 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
     glintL_set_flag(L, "__metatable", false);
     lua_settop(L, 1);
     lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    glintL_open_own(L);
     lua_sethook(L, look, LUA_MASKCOUNT, INSTRUCTIONS);
 }

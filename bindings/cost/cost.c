@@ -18,7 +18,6 @@ static const char PAGE[] = {
 static const char STYLE[] = {
 #include "bindings/cost/plot.css.h"
 };
-typedef glintL_carried module;
 #include "bindings/cost/modules.h" // LIBRARY
 
 cost_study *cost_study_of(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }

@@ -2,7 +2,7 @@
 #include <lualib.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/run/carried.h"
 #include "bindings/run/system.h"
 
 typedef struct members { // members of the module's table, which is at `index`
@@ -96,6 +96,7 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     };
     luaL_checkversion(L);
     glintL_open_run(L);
+    glintL_open_own(L);
     glintL_set_tracing(L, &glintL_patterns);
     lua_newtable(L);
     lua_pushliteral(L, GLINT_VERSION);

@@ -1,4 +1,4 @@
-// Generates texts from data by Lua modules that the command and the module carry as bytes.
+// Runs the Lua modules that the command and the module carry as bytes.
 #include <lualib.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,7 +63,40 @@ static int json(lua_State *L)
     return 1;
 }
 
-// ---- Running the modules ----
+// ---- Loading ----
+
+typedef struct code_buffer {
+    luaL_Buffer buffer;
+    bool begun; // luaL_buffinit was called: at the first write, as lua_dump needs the function on top until then
+} code_buffer;
+
+static int add_code(lua_State *L, const void *bytes, size_t size, void *context)
+{
+    code_buffer *code = context;
+    if (!code->begun)
+        luaL_buffinit(L, &code->buffer);
+    code->begun = true;
+    luaL_addlstring(&code->buffer, bytes, size);
+    return 0;
+}
+
+void glintL_load_stripped(lua_State *L, const glintL_carried *module)
+{
+    code_buffer code = { .begun = false };
+    size_t size;
+    if (luaL_loadbufferx(L, (const char *)module->text, module->size, module->name, "t") != LUA_OK)
+        lua_error(L);
+    if (lua_dump(L, add_code, &code, true))
+        luaL_error(L, "out of memory");
+    luaL_pushresult(&code.buffer);
+    const char *bytes = lua_tolstring(L, -1, &size);
+    if (luaL_loadbufferx(L, bytes, size, "=glint", "b") != LUA_OK)
+        lua_error(L);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+}
+
+// ---- Modules in a state of their own ----
 
 typedef struct task {
     const glintL_carried *modules;
@@ -75,8 +108,8 @@ typedef struct task {
 
 static int run_modules(lua_State *L)
 {
-    const task *what = lua_touserdata(L, 1);
     static const luaL_Reg tools[] = { { "base64", base64 }, { "json", json }, { NULL, NULL } };
+    const task *what = lua_touserdata(L, 1);
     luaL_openlibs(L);
     luaL_newlib(L, tools);
     for (size_t i = 0; i < what->count; i++) {

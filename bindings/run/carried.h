@@ -1,5 +1,9 @@
-/// Reports are texts generated from data. C pushes the data as a Lua value, and a Lua module that is carried as bytes
-/// (CARRIED in the Makefile) makes the text, in a separate state that scripts cannot affect. Private to bindings/.
+/// Lua modules that the command and the module carry as bytes (modules.h in the Makefile). Private to bindings/.
+///
+/// The modules of bindings/run work on a script's objects, in the script's state. They see copies of Lua's functions as
+/// these were when glint was opened, and no script can reach them. They call no methods of strings, which a script can
+/// change, and have no line numbers: an error names the line of the script. The other modules generate texts from data,
+/// each in a state of its own.
 #ifndef GLINT_L_CARRIED_H
 #define GLINT_L_CARRIED_H
 
@@ -8,16 +12,29 @@
 #include "bindings/run/run.h"
 
 typedef struct glintL_carried {
-    const char *name; ///< "@report.lua", for messages
+    const char *name; ///< for messages
     const unsigned char *text;
     size_t size;
 } glintL_carried;
+
+// ---- own.c: the modules of bindings/run ----
+
+/// Retains Lua's functions for the modules in this state.
+void glintL_open_own(lua_State *L);
+/// Calls a function of the modules, like lua_call: the arguments are on top of the stack.
+void glintL_call_own(lua_State *L, const char *function, int arguments, int results);
+extern const luaL_Reg glintL_sheet_functions[], glintL_sweep_functions[]; ///< C functions for the modules
+
+// ---- carried.c ----
 
 typedef struct glintL_made_text {
     lua_State *state; ///< owned; holds the text
     const char *text;
     size_t size;
 } glintL_made_text;
+
+/// Pushes a module's function without line numbers, so that errors and warnings name the nearest line of the script.
+void glintL_load_stripped(lua_State *L, const glintL_carried *module);
 
 /// Runs the modules in order. Each is called with the same table, which has json(value) and base64(bytes), and adds its
 /// functions. Then calls the table's function `function` with the values pushed by `push` (it may raise), and stores

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bindings/run/carried.h"
 #include "bindings/run/order.h"
 #include "bindings/run/sheet.h"
 #include "bindings/run/walk.h"
@@ -63,9 +64,12 @@ void glintL_walk_add_axes(glintL_walk *walk, glintL_order *order)
     lua_getiuservalue(L, walk->job_index, GLINTL_JOB_FRAME);
     const int axes = lua_gettop(L);
     for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, axes); i++) {
-        const int object = glintL_sweep_push_axis(L, axes, i);
-        glintL_order_axis *axis = glintL_order_add(order, (int64_t)lua_rawlen(L, object + 2));
-        glintL_sweep_push_title(L, axes, i);
+        lua_rawgeti(L, axes, i);
+        lua_rawgeti(L, -1, 3); // the values
+        glintL_order_axis *axis = glintL_order_add(order, (int64_t)lua_rawlen(L, -1));
+        lua_pushvalue(L, axes);
+        lua_pushinteger(L, i);
+        glintL_call_own(L, "title_of_axis", 2, 1);
         snprintf(axis->name, sizeof axis->name, "%s", lua_tostring(L, -1));
         lua_settop(L, axes);
     }

@@ -554,7 +554,6 @@ int glintL_job_run(lua_State *L); ///< animation:run{...}
 /// Reads the constructor's table at `index` into the job at `job_index`. Both are absolute.
 void glintL_job_read_table(lua_State *L, int index, int job_index);
 void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name); ///< reads size, over or sheet
-void glintL_sweep_push_axes(lua_State *L, int axes); ///< pushes a copy of the list at `axes` (absolute)
 void glintL_sweep_build(lua_State *L, int index, int64_t n);
 /// Pushes a userdata with default fields; see GLINTL_JOB_... for its user values.
 glintL_job *glintL_push_job(lua_State *L, glintL_job_kind kind);
@@ -569,15 +568,6 @@ double glintL_job_shutter_time(const glintL_job *job, int64_t n, double share, i
 void glintL_job_build(lua_State *L, int index, int64_t n, double t);
 /// Restores the values that a sweep has changed, so that the next job does not depend on which frames were rendered.
 void glintL_sweep_restore(lua_State *L, int index);
-/// Pushes the object, the field's name and the list of values of axis `i` of the list at `axes`. Returns the object's
-/// index.
-int glintL_sweep_push_axis(lua_State *L, int axes, lua_Integer i);
-/// Pushes "object.field" for axis `i` of the list at `axes`, or only the field's name if the object has none.
-void glintL_sweep_push_title(lua_State *L, int axes, lua_Integer i);
-/// Pushes the table name -> value for frame n of the sweep at `index`.
-void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
-/// Pushes the "name=value" lines for frame n of the sweep at `index`, one per axis.
-void glintL_sweep_push_position(lua_State *L, int index, int64_t n);
 
 /// Makes a list of jobs from a script's result at `index` (a job, a scene, a chart, or a list of them). Pushes it and returns
 /// true, or pushes a message and returns false.

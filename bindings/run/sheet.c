@@ -1,370 +1,210 @@
-// Contact sheets: chooses labels, columns and titles from the axes of the files. The engine draws the sheet.
-#include <math.h>
-#include <stdlib.h>
+// Contact sheets: reads the files, draws a sheet and writes a page, for the modules sheet.lua and the like, which choose
+// its labels, columns and heads.
+#include <errno.h>
 #include <string.h>
-#include <strings.h>
 
+#include "bindings/run/carried.h"
 #include "bindings/run/sheet.h"
 
-#define DEFAULT_GAIN 8.0
-#define ROW_MAX 6 // cells of a single axis in one row, unless columns are given
-#define LABEL_SIZE 512
+#define PICTURE "glint.sheet picture"
+#define PIECE 24576 // bytes of a file; a multiple of three, so that only the last piece of base64 is padded
 
-static bool ends_in(const char *path, const char *ending)
+static const char PAGE[] = {
+#include "bindings/run/sheet.html.h"
+};
+
+// Pushes the exit code of a status, and its message unless it is GLINT_OK.
+static int push_outcome(lua_State *L, glint_status status, const glint_error *error)
 {
-    size_t length = strlen(path), size = strlen(ending);
-    return length > size && path[length - size - 1] != '/' && strcasecmp(path + length - size, ending) == 0;
+    lua_pushinteger(L, glintL_run_exit_code(status));
+    lua_pushstring(L, status ? error->message : NULL);
+    return 2;
 }
 
-bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
+// ---- Reading ----
+
+static int drop_picture(lua_State *L)
 {
-    if (!ends_in(sheet->path, ".png") && !glintL_name_is_vector(sheet->path) && !ends_in(sheet->path, ".html"))
-        return glintL_complain(message, "a file name ending in .png, .svg, .pdf or .html expected, got '%.200s'",
-                               sheet->path);
-    if (sheet->count < 1 || sheet->count > GLINTL_SHEET_MAX)
-        return glintL_complain(message, "pictures: 1 .. %d expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
-    if (!glintL_sheet_check_names(sheet, message))
-        return false;
-    if (sheet->difference > (int64_t)sheet->count)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "difference: a picture 1 .. %zu expected, got %lld", sheet->count,
-                 (long long)sheet->difference);
-    else if (sheet->gain > 0 && !sheet->difference)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: expected together with difference");
-    else if (sheet->columns && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: not for pages; a page has one column for each value of its "
-                                               "first axis");
-    else if ((sheet->size > 0 || sheet->transparent || sheet->colorbar) && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: has no effect on a page",
-                 sheet->colorbar ? "colorbar" : sheet->transparent ? "transparent" : "size");
-    else
-        return true;
-    return false;
-}
-
-// ---- Labels ----
-
-static const char *frame_of(const glintL_axes *axes, size_t cell)
-{
-    const char *frame = glint_picture_text(axes->pictures[cell], "glint:frame");
-    return frame ? frame : "?";
-}
-
-// Returns whether the cells have different frame numbers.
-static bool frames_differ(const glintL_axes *axes)
-{
-    for (size_t i = 1; i < axes->cell_count; i++)
-        if (strcmp(frame_of(axes, i), frame_of(axes, i - 1)) == 0)
-            return false;
-    return axes->cell_count > 1;
-}
-
-// Writes a cell's values of the axes from `first` to before `end`, with the names or without.
-static void write_values(const glintL_sheet *sheet, const glintL_axes *axes, size_t first, size_t end, size_t cell,
-                         bool named, const char *separator, char out[LABEL_SIZE])
-{
-    char name[GLINTL_AXIS_SIZE] = "", value[GLINTL_AXIS_SIZE];
-    size_t used = 0;
-    out[0] = '\0';
-    for (size_t a = first; a < end && used < LABEL_SIZE; a++) {
-        const glintL_axis *axis = &axes->axis[a];
-        if (named)
-            glintL_axis_title(sheet, axis, name);
-        glintL_axis_spell(sheet, axis, axis->index[cell], value);
-        used += (size_t)snprintf(out + used, LABEL_SIZE - used, "%s%s%s%s", a > first ? separator : "", name,
-                                 named ? " = " : "", value);
-    }
-}
-
-// Writes "name = value" for every axis, as separate parts; without axes the frame number, otherwise the file name.
-static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE])
-{
-    write_values(sheet, axes, 0, axes->count, cell, true, "\n", out);
-    if (axes->count == 0 && frames_differ(axes))
-        snprintf(out, LABEL_SIZE, "frame %s", frame_of(axes, cell));
-    else if (axes->count == 0)
-        snprintf(out, LABEL_SIZE, "%s", glintL_base_name(sheet->files[cell]));
-}
-
-// Returns the value for {name}; NULL: unknown name.
-static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, const char *name,
-                              size_t length, char value[GLINTL_AXIS_SIZE])
-{
-    for (size_t a = 0; a < axes->count; a++) {
-        const glintL_axis *axis = &axes->axis[a];
-        if (strlen(axis->name) != length || memcmp(axis->name, name, length) != 0)
-            continue;
-        glintL_axis_spell(sheet, axis, axis->index[cell], value);
-        return value;
-    }
-    if (length == 4 && memcmp(name, "file", 4) == 0)
-        return glintL_base_name(sheet->files[cell]);
-    return length == 5 && memcmp(name, "frame", 5) == 0 ? frame_of(axes, cell) : NULL;
-}
-
-// Fills in the template. False: the message names the unknown name.
-static bool fill_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE],
-                       char *message)
-{
-    char value[GLINTL_AXIS_SIZE];
-    size_t used = 0;
-    for (const char *at = sheet->label; *at && used < LABEL_SIZE - 1;) {
-        const char *end = *at == '{' ? strchr(at, '}') : NULL;
-        if (!end) {
-            out[used++] = *at++;
-            continue;
-        }
-        size_t length = (size_t)(end - at) - 1;
-        const char *text = find_value(sheet, axes, cell, at + 1, length, value);
-        if (!text) {
-            snprintf(message, GLINTL_MESSAGE_SIZE,
-                     "label: {%.*s}: an axis of the sheet, {file} or {frame} expected; the axes are%s", (int)length,
-                     at + 1, axes->count ? ":" : " none");
-            for (size_t a = 0; a < axes->count; a++) {
-                size_t size = strlen(message);
-                snprintf(message + size, GLINTL_MESSAGE_SIZE - size, " {%s}", axes->axis[a].name);
-            }
-            return false;
-        }
-        used += (size_t)snprintf(out + used, LABEL_SIZE - used, "%s", text);
-        at = end + 1;
-    }
-    out[used < LABEL_SIZE ? used : LABEL_SIZE - 1] = '\0';
-    return true;
-}
-
-static void free_list(char **list, size_t count)
-{
-    for (size_t i = 0; i < count && list; i++)
-        free(list[i]);
-    free(list);
-}
-
-// Returns the number of columns: the number of values of a grid's first axis; otherwise the sheet is about square.
-static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
-{
-    if (sheet->columns)
-        return (int)(sheet->columns < (int64_t)sheet->count ? sheet->columns : (int64_t)sheet->count);
-    if (axes->is_grid && (axes->count > 1 || sheet->count <= ROW_MAX))
-        return (int)axes->axis[0].count;
-    return (int)ceil(sqrt((double)sheet->count));
-}
-
-// Returns whether heads name the values of the axes.
-static bool has_heads(const glintL_sheet *sheet, const glintL_axes *axes)
-{
-    return axes->is_grid && !sheet->labels && !sheet->label;
-}
-
-// Returns whether a single axis takes several rows: then each picture has its value below it.
-static bool is_wrapped(const glintL_sheet *sheet, const glintL_axes *axes)
-{
-    return axes->count == 1 && !ends_in(sheet->path, ".html") && (size_t)columns_of(sheet, axes) < axes->axis[0].count;
-}
-
-// Returns the labels of all cells, owned by the caller. NULL: the message says why.
-static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
-{
-    char label[LABEL_SIZE];
-    char **labels = calloc(sheet->count, sizeof *labels);
-    bool good = labels != NULL;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-    for (size_t i = 0; i < sheet->count && good; i++) {
-        label[0] = '\0';
-        if (sheet->labels)
-            snprintf(label, sizeof label, "%s", sheet->labels[i]);
-        else if (has_heads(sheet, axes))
-            write_values(sheet, axes, 0, is_wrapped(sheet, axes), i, false, "", label);
-        else if (!sheet->label)
-            default_label(sheet, axes, i, label);
-        else if (strcmp(sheet->label, "none") != 0)
-            good = fill_label(sheet, axes, i, label, message);
-        labels[i] = good ? strdup(label) : NULL;
-        good = labels[i] != NULL;
-    }
-    if (good)
-        return labels;
-    free_list(labels, sheet->count);
-    return NULL;
-}
-
-// ---- The picture ----
-
-// Returns how many axes of a grid go across: those whose combined values make the columns. A single axis may take
-// several rows. 0: no number of axes fits the columns.
-static size_t count_across(const glintL_axes *axes, size_t columns)
-{
-    size_t product = 1;
-    if (axes->count == 1)
-        return 1;
-    for (size_t a = 0; a < axes->count; a++) {
-        product *= axes->axis[a].count;
-        if (product == columns)
-            return a + 1;
-    }
+    glint_picture **picture = lua_touserdata(L, 1);
+    glint_picture_destroy(*picture);
+    *picture = NULL;
     return 0;
 }
 
-static bool check_columns(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
+// read_picture(path): returns the size, the bits and the texts of a picture; nil, the exit code and a message if there
+// is none.
+static int read_picture(lua_State *L)
 {
-    size_t used = 0, product = 1;
-    char counts[200] = "";
-    if (!axes->is_grid || count_across(axes, (size_t)columns_of(sheet, axes)))
-        return true;
-    for (size_t a = 0; a < axes->count && used < sizeof counts; a++) {
-        product *= axes->axis[a].count;
-        used += (size_t)snprintf(counts + used, sizeof counts - used, "%s%zu (%s)", a ? " x " : "", axes->axis[a].count,
-                                 axes->axis[a].name);
-    }
-    return glintL_complain(
-        message, "columns: %zu or %zu expected, so that each column of the %s pictures has one value of %s, got %lld",
-        axes->axis[0].count, product, counts, axes->axis[0].name, (long long)sheet->columns);
-}
-
-// Lists the names of the axes from `first` to before `end`, owned by the caller. NULL: out of memory.
-static char *list_names(const glintL_sheet *sheet, const glintL_axes *axes, size_t first, size_t end)
-{
-    char *out = calloc(GLINTL_AXES_MAX, GLINTL_AXIS_SIZE + 2);
-    size_t used = 0;
-    for (size_t a = first; a < end && out; a++) {
-        if (a > first)
-            used += (size_t)snprintf(out + used, 3, ", ");
-        glintL_axis_title(sheet, &axes->axis[a], out + used);
-        used += strlen(out + used);
-    }
-    return out;
-}
-
-// Returns the heads of `count` columns, rows or blocks, owned by the caller: the values of the axes from `first` to
-// before `end` in every `step`-th cell. NULL: out of memory.
-static char **make_heads(const glintL_sheet *sheet, const glintL_axes *axes, size_t first, size_t end, size_t count,
-                         size_t step, bool named)
-{
-    char text[LABEL_SIZE];
-    char **heads = calloc(count, sizeof *heads);
-    bool good = heads != NULL;
-    for (size_t i = 0; i < count && good; i++) {
-        write_values(sheet, axes, first, end, i * step, named, ", ", text);
-        good = (heads[i] = strdup(text)) != NULL;
-    }
-    if (!good) {
-        free_list(heads, count);
-        heads = NULL;
-    }
-    return heads;
-}
-
-// The texts around a grid, owned.
-typedef struct surround {
-    char *across, *down; // NULL: none
-    char **columns, **rows, **blocks; // NULL: none
-    size_t column_count, row_count, block_count;
-} surround;
-
-static void drop_surround(surround *s)
-{
-    free_list(s->columns, s->column_count);
-    free_list(s->rows, s->row_count);
-    free_list(s->blocks, s->block_count);
-    free(s->across);
-    free(s->down);
-}
-
-// Makes the heads of columns, rows and blocks: `across` axes go across, the next one down, and all others make blocks.
-static bool add_heads(const glintL_sheet *sheet, const glintL_axes *axes, size_t across, surround *out)
-{
-    const size_t down = across < axes->count ? across + 1 : across, cells = axes->cell_count;
-    out->row_count = cells / out->column_count;
-    out->block_count = down > across ? out->row_count / axes->axis[across].count : 0;
-    out->columns = make_heads(sheet, axes, 0, across, out->column_count, 1, false);
-    bool good = out->columns;
-    if (down > across)
-        good = (out->rows = make_heads(sheet, axes, across, down, out->row_count, out->column_count, false)) && good;
-    if (axes->count > down)
-        good = (out->blocks = make_heads(sheet, axes, down, axes->count, out->block_count, cells / out->block_count, true)) && good;
-    return good;
-}
-
-// Makes the texts around a grid. False: out of memory.
-static bool make_surround(const glintL_sheet *sheet, const glintL_axes *axes, surround *out)
-{
-    const size_t columns = (size_t)columns_of(sheet, axes);
-    const size_t across = axes->is_grid ? count_across(axes, columns) : 0;
-    const size_t down = across < axes->count && has_heads(sheet, axes) ? across + 1 : axes->count;
-    *out = (surround) { .column_count = columns };
-    if (!across)
-        return true;
-    bool good = (out->across = list_names(sheet, axes, 0, across)) != NULL;
-    if (across < axes->count)
-        good = (out->down = list_names(sheet, axes, across, down)) && good;
-    if (has_heads(sheet, axes) && !is_wrapped(sheet, axes))
-        good = add_heads(sheet, axes, across, out) && good;
-    return good;
-}
-
-static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char *const *labels, char *message)
-{
-    surround around;
+    static const char *const texts[] = { "sweep", "params", "options", "pass", "frame" };
+    char keyword[32];
     glint_error error;
-    glint_status status = GLINT_ERR_NOMEM;
-    glint_sheet_cell *cells = calloc(sheet->count, sizeof *cells);
-    for (size_t i = 0; i < sheet->count && cells; i++)
-        cells[i] = (glint_sheet_cell) { sheet->files[i], labels[i] };
-    snprintf(error.message, sizeof error.message, "out of memory");
-    if (make_surround(sheet, axes, &around) && cells) {
-        const glint_sheet_desc desc = {
-            .cells = cells, .cell_count = sheet->count, .columns = columns_of(sheet, axes), .title = sheet->title,
-            .across = around.across, .down = around.down, .column_heads = (const char *const *)around.columns,
-            .row_heads = (const char *const *)around.rows, .block_heads = (const char *const *)around.blocks,
-            .block_rows = around.blocks ? (int)(around.row_count / around.block_count) : 0,
-            .difference = (size_t)sheet->difference, .gain = sheet->gain > 0 ? sheet->gain : DEFAULT_GAIN, .size = sheet->size,
-            .dpi = sheet->dpi, .transparent = sheet->transparent, .colorbar = sheet->colorbar,
-        };
-        status = glint_sheet_write(&desc, sheet->path, &error);
+    lua_settop(L, 1);
+    lua_createtable(L, 0, 9);
+    glint_picture **picture = glintL_push_owner(L, sizeof *picture, PICTURE, drop_picture);
+    const glint_status status = glint_picture_read(luaL_checkstring(L, 1), false, picture, &error);
+    if (status) {
+        lua_pushnil(L);
+        return 1 + push_outcome(L, status, &error);
     }
-    drop_surround(&around);
-    free(cells);
-    if (status)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
-    return glintL_run_exit_code(status);
-}
-
-// Returns the names of all axes as "name=" lines, owned by the caller. NULL: out of memory.
-static char *axis_lines(const glintL_axes *axes)
-{
-    size_t size = 1, used = 0;
-    for (size_t a = 0; a < axes->count; a++)
-        size += strlen(axes->axis[a].name) + 2;
-    char *lines = calloc(size, 1);
-    for (size_t a = 0; a < axes->count && lines; a++)
-        used += (size_t)snprintf(lines + used, size - used, "%s=\n", axes->axis[a].name);
-    return lines;
-}
-
-static bool check_known(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
-{
-    char *lines = axis_lines(axes);
-    const bool good = lines && glintL_sheet_check_axes(sheet, lines, message);
-    if (!lines)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-    free(lines);
-    return good;
-}
-
-int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
-{
-    glintL_axes axes;
-    int code = GLINTL_EXIT_USAGE;
-    if (!glintL_sheet_check(sheet, message))
-        return code;
-    if (glintL_axes_find(sheet, &axes, &code, message)) {
-        const bool good = check_known(sheet, &axes, message) && check_columns(sheet, &axes, message);
-        char **labels = good ? make_labels(sheet, &axes, message) : NULL;
-        code = GLINTL_EXIT_USAGE;
-        if (labels)
-            code = ends_in(sheet->path, ".html") ? glintL_sheet_page(sheet, &axes, labels, message)
-                                                 : draw_picture(sheet, &axes, labels, message);
-        free_list(labels, sheet->count);
+    lua_setfield(L, 2, "picture");
+    glintL_set_whole(L, "width", glint_picture_width(*picture));
+    glintL_set_whole(L, "height", glint_picture_height(*picture));
+    glintL_set_whole(L, "bits", glint_picture_bits(*picture));
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        snprintf(keyword, sizeof keyword, "glint:%s", texts[i]);
+        glintL_set_text(L, texts[i], glint_picture_text(*picture, keyword));
     }
-    glintL_axes_drop(&axes);
+    return 1;
+}
+
+static const glint_picture *check_picture(lua_State *L, int index)
+{
+    lua_getfield(L, index, "picture");
+    return *(glint_picture **)luaL_checkudata(L, -1, PICTURE);
+}
+
+// match_pictures(a, a_path, b, b_path): returns a message if the pictures come from different scripts.
+static int match_pictures(lua_State *L)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    const glint_picture *a = check_picture(L, 1), *b = check_picture(L, 3);
+    if (glintL_provenance_match(a, luaL_checkstring(L, 2), b, luaL_checkstring(L, 4), false, message))
+        return 0;
+    lua_pushstring(L, message);
+    return 1;
+}
+
+// ---- Drawing ----
+
+// The values of a field of the table at 1; the table retains a text.
+static double number_of(lua_State *L, const char *name)
+{
+    lua_getfield(L, 1, name);
+    const double number = lua_tonumber(L, -1);
+    lua_pop(L, 1);
+    return number;
+}
+
+static const char *text_of(lua_State *L, const char *name)
+{
+    lua_getfield(L, 1, name);
+    const char *text = lua_tostring(L, -1);
+    lua_pop(L, 1);
+    return text;
+}
+
+// Pushes a list of texts, which the field's list retains; NULL: there is no such field.
+static const char **push_texts(lua_State *L, const char *name)
+{
+    luaL_checkstack(L, 4, "sheet");
+    if (lua_getfield(L, 1, name) != LUA_TTABLE)
+        return NULL;
+    const size_t count = lua_rawlen(L, -1);
+    const char **texts = lua_newuserdatauv(L, (count + 1) * sizeof *texts, 0);
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, -2, (lua_Integer)i + 1);
+        texts[i] = lua_tostring(L, -1);
+        lua_pop(L, 1);
+    }
+    return texts;
+}
+
+static const glint_overlay_desc *colorbar_of(lua_State *L)
+{
+    lua_getfield(L, 1, "colorbar");
+    const glint_overlay *bar = glintL_test_object(L, -1, GLINTL_OVERLAY);
+    const glint_overlay_desc *desc = bar ? glint_overlay_get(bar) : lua_islightuserdata(L, -1) ? lua_touserdata(L, -1) : NULL;
+    lua_pop(L, 1);
+    return desc;
+}
+
+// draw_sheet(drawing): draws a sheet from the fields of glint_sheet_desc. Returns the exit code and a message.
+static int draw_sheet(lua_State *L)
+{
+    glint_error error;
+    const char **files = push_texts(L, "files"), **labels = push_texts(L, "labels");
+    lua_getfield(L, 1, "files");
+    const size_t count = lua_rawlen(L, -1);
+    glint_sheet_cell *cells = lua_newuserdatauv(L, count * sizeof *cells, 0);
+    for (size_t i = 0; i < count; i++)
+        cells[i] = (glint_sheet_cell) { files[i], labels[i] };
+    lua_getfield(L, 1, "transparent");
+    const bool is_transparent = lua_toboolean(L, -1);
+    const glint_sheet_desc desc = {
+        .cells = cells, .cell_count = count, .columns = (int)number_of(L, "columns"), .title = text_of(L, "title"),
+        .across = text_of(L, "across"), .down = text_of(L, "down"), .column_heads = push_texts(L, "column_heads"),
+        .row_heads = push_texts(L, "row_heads"), .block_heads = push_texts(L, "block_heads"),
+        .block_rows = (int)number_of(L, "block_rows"), .difference = (size_t)number_of(L, "difference"),
+        .gain = number_of(L, "gain"), .size = number_of(L, "size"), .dpi = number_of(L, "dpi"),
+        .transparent = is_transparent, .colorbar = colorbar_of(L),
+    };
+    return push_outcome(L, glint_sheet_write(&desc, text_of(L, "path"), &error), &error);
+}
+
+// ---- The page ----
+
+static int sheet_page(lua_State *L)
+{
+    lua_pushlstring(L, PAGE, sizeof PAGE);
+    return 1;
+}
+
+static glint_status append_text(glint_draft *draft, const char *text, glint_error *error)
+{
+    return glint_draft_append(draft, text, strlen(text), error);
+}
+
+static glint_status append_file(glint_draft *draft, const char *path, glint_error *error)
+{
+    uint8_t bytes[PIECE];
+    char text[PIECE / 3 * 4];
+    FILE *file = fopen(path, "rb");
+    size_t size = 0;
+    glint_status status = append_text(draft, "\"data:image/png;base64,", error);
+    while (file && !status && (size = fread(bytes, 1, PIECE, file)) > 0)
+        status = glint_draft_append(draft, text, glintL_base64(bytes, size, text), error);
+    if (!file || (!status && ferror(file))) {
+        snprintf(error->message, sizeof error->message, "%.300s: %s", path, strerror(errno));
+        status = GLINT_ERR_IO;
+    }
+    if (file)
+        fclose(file);
+    return status ? status : append_text(draft, "\",\n", error);
+}
+
+// write_page(path, head, files, tail): writes a page with the pictures between two texts. Returns the exit code and a
+// message.
+static int write_page(lua_State *L)
+{
+    glint_draft *draft = NULL;
+    glint_error error;
+    glint_status status = glint_draft_create(luaL_checkstring(L, 1), &draft, &error);
+    if (!status)
+        status = append_text(draft, lua_tostring(L, 2), &error);
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, 3) && !status; i++) {
+        lua_rawgeti(L, 3, i);
+        status = append_file(draft, lua_tostring(L, -1), &error);
+        lua_pop(L, 1);
+    }
+    if (!status)
+        status = append_text(draft, lua_tostring(L, 4), &error);
+    if (!status)
+        status = glint_draft_finish(draft, &error);
+    glint_draft_destroy(draft);
+    return push_outcome(L, status, &error);
+}
+
+const luaL_Reg glintL_sheet_functions[] = {
+    { "read_picture", read_picture }, { "match_pictures", match_pictures }, { "draw_sheet", draw_sheet },
+    { "sheet_page", sheet_page },     { "write_page", write_page },         { NULL, NULL },
+};
+
+int glintL_sheet_make(lua_State *L, char message[GLINTL_MESSAGE_SIZE])
+{
+    glintL_call_own(L, "make_sheet", 1, 2);
+    const int code = (int)lua_tointeger(L, -2);
+    if (code)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", lua_tostring(L, -1));
+    lua_pop(L, 2);
     return code;
 }

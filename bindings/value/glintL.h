@@ -391,10 +391,6 @@ int glintL_group_remove(lua_State *L);
 int glintL_group_count(lua_State *L);
 void glintL_group_fill(lua_State *L, int list, int index, const char *name);
 
-/// Sets an object's field by name, for a sweep's axis. The value is on top of the stack and stays there. Works on
-/// anything with __newindex; raises like the assignment.
-void glintL_set_field(lua_State *L, int object_index, const char *name);
-
 /// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
 typedef struct glintL_render {
     glint_render_desc desc;

@@ -141,14 +141,6 @@ void glintL_charge(lua_State *L, size_t bytes)
         lua_gc(L, LUA_GCSTEP, kib < INT_MAX ? (int)kib : INT_MAX);
 }
 
-void glintL_set_field(lua_State *L, int object_index, const char *name)
-{
-    object_index = lua_absindex(L, object_index);
-    luaL_checkstack(L, 4, "field");
-    lua_pushvalue(L, -1);
-    lua_setfield(L, object_index, name);
-}
-
 bool glintL_push_object_name(lua_State *L, int index)
 {
     if (luaL_getmetafield(L, index, "class") == LUA_TNIL)

@@ -41,12 +41,6 @@ typedef struct web_job {
 
 static web_job job;
 
-typedef struct module { // a carried Lua module
-    const char *name;
-    const unsigned char *text;
-    size_t size;
-} module;
-
 #include "bindings/web/library.h" // LIBRARY
 
 static const unsigned char PRELUDE[] = {

@@ -1,0 +1,43 @@
+-- A sheet as one HTML page: a slider for each axis, with the pictures as data URIs. The page needs no other files.
+local the = ...
+local format, match, gsub, sub = string.format, string.match, string.gsub, string.sub
+local concat, ipairs = table.concat, ipairs
+
+local USAGE <const> = 2 -- exit code
+
+local function html(text) return (gsub(text, "[<&]", { ["<"] = "&lt;", ["&"] = "&amp;" })) end
+
+-- Returns a JavaScript string that cannot end its script element; newlines become two spaces.
+local ESCAPES <const> = { ['"'] = '\\"', ["\\"] = "\\\\", ["<"] = "\\u003c", ["\n"] = "  " }
+local function quoted(text)
+  return '"' .. gsub(text, '[\1-\31"\\<]', function(c) return ESCAPES[c] or " " end) .. '"'
+end
+
+local function list_axes(sheet, axes)
+  if not axes.is_grid then -- one slider goes through all pictures
+    local every = "Array.from({ length: %d }, (_, i) => String(i + 1))"
+    return format('  { name: "picture", values: ' .. every .. " },\n", axes.cells)
+  end
+  local out = {}
+  for a, axis in ipairs(axes) do
+    local values = {}
+    for i in ipairs(axis.values) do values[i] = quoted(the.spell_value(sheet, axis, i)) end
+    out[a] = "  { name: " .. quoted(the.axis_title(sheet, axis)) .. ", values: [" .. concat(values, ", ") .. "] },\n"
+  end
+  return concat(out)
+end
+
+-- Writes the page. Returns the exit code and a message.
+function the.make_sheet_page(sheet, axes, pictures, labels)
+  local quotes, title = {}, html(sheet.title or "Contact sheet")
+  for i, picture in ipairs(pictures) do
+    if picture.bits > 16 then return USAGE, sub(sheet.files[i], 1, 300) .. ": a page shows only .png files" end
+    quotes[i] = quoted(labels[i]) .. ",\n"
+  end
+  local fields = { VERSION = the.version, TITLE = title, HEADING = sheet.title and "<h1>" .. title .. "</h1>\n" or "",
+    DIFFERENCE = format("%d", sheet.difference or 0), GAIN = format("%g", sheet.gain or the.GAIN),
+    GRID = axes.is_grid and "true" or "false", AXES = list_axes(sheet, axes), LABELS = concat(quotes),
+    LIVE = sheet.live and "<h2>Try it</h2>\n" .. sheet.live or "" }
+  local head, tail = match(the.sheet_page(), "^(.*)@PICTURES@(.*)$")
+  return the.write_page(sheet.path, (gsub(head, "@(%u+)@", fields)), sheet.files, tail)
+end
