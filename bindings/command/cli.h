@@ -35,15 +35,27 @@ typedef enum cli_words { ///< words that follow a command's name
     CLI_FILE_SCRIPT
 } cli_words;
 
+typedef enum cli_needs { ///< what a command needs before it begins
+    CLI_NOTHING,
+    CLI_SIGNALS, ///< a signal removes the drafts and ends the process
+    CLI_RUN
+} cli_needs;
+
+typedef struct cli_options cli_options;
+typedef struct cli_output cli_output;
+
 typedef struct cli_command_name {
     const char *name;
     cli_command command;
     cli_words words;
+    cli_needs needs;
+    int (*run)(cli_options *options, cli_output *output, glintL_run *run); ///< returns the exit code
     const char *synopsis; ///< the arguments on the command line
     const char *help; ///< one line for people
 } cli_command_name;
 #define CLI_COMMAND_COUNT 15
 extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
+const cli_command_name *cli_command_row(cli_command command); ///< returns the row of a command
 
 typedef struct cli_sweep { ///< --sweep
     const char *name;
@@ -54,7 +66,7 @@ typedef struct cli_sweep { ///< --sweep
 
 #define CLI_DIALECT_OPTIONS 6 ///< number of options such as --gr-order
 
-typedef struct cli_options {
+struct cli_options {
     cli_command command;
     bool has_command; ///< a command's name was given
     bool json, quiet, help, version, verbose;
@@ -94,7 +106,7 @@ typedef struct cli_options {
     double untrusted_s; ///< time limit of an untrusted script; 0: the script is trusted
     const char *dialect; ///< dialect of the script; NULL: glint's own
     const char *dialect_text[CLI_DIALECT_OPTIONS]; ///< texts of --gr-order and so on; NULL: not given
-} cli_options;
+};
 
 #define CLI_SUGGEST_FILES "/" ///< completions: file names
 #define CLI_SUGGEST_PASSES "," ///< completions: names of passes
@@ -157,7 +169,7 @@ void cli_free_sweep(cli_sweep *sweep);
 
 typedef struct cli_progress cli_progress;
 
-typedef struct cli_output {
+struct cli_output {
     FILE *data; ///< stdout, or with --json a copy of the original stdout
     bool json, quiet, color;
     bool data_failed, failure_printed;
@@ -166,7 +178,7 @@ typedef struct cli_output {
     glintL_run *run;
     double start_ms;
     int64_t kept_first, kept_last; ///< a range of kept frames not printed yet; 0: none
-} cli_output;
+};
 
 /// Opens the output. With --json everything else written to stdout, by the script or its child processes, goes to
 /// stderr.
@@ -280,7 +292,7 @@ void cli_catch_signals(glintL_run *run);
 void cli_leave_by_signals(void);
 void cli_release_signals(void);
 
-// ---- The sub-commands: each returns the exit code ----
+// ---- The sub-commands: each returns the exit code. `run` is NULL unless the command needs a run ----
 
 int cli_render(cli_options *options, cli_output *output, glintL_run *run);
 /// Writes the remaining frames and gives the last warnings. good: the script ended well. False: the run has failed.
@@ -296,14 +308,14 @@ int cli_publish(cli_options *options, cli_output *output, glintL_run *run);
 char *cli_live(const cli_options *options, const glintL_request *request, int *code, char message[GLINTL_MESSAGE_SIZE]);
 /// glint relight. relight.c of bindings/relight.
 int cli_relight(cli_options *options, cli_output *output, glintL_run *run);
-int cli_completion(const cli_options *options, cli_output *output); ///< options->script names the shell
-int cli_compare(const cli_options *options, cli_output *output);
-int cli_sheet(const cli_options *options, cli_output *output);
+int cli_completion(cli_options *options, cli_output *output, glintL_run *run); ///< options->script names the shell
+int cli_compare(cli_options *options, cli_output *output, glintL_run *run);
+int cli_sheet(cli_options *options, cli_output *output, glintL_run *run);
 int cli_assemble(cli_options *options, cli_output *output, glintL_run *run);
 int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run);
-int cli_new(const cli_options *options, cli_output *output);
-int cli_join(const cli_options *options, cli_output *output);
+int cli_new(cli_options *options, cli_output *output, glintL_run *run);
+int cli_join(cli_options *options, cli_output *output, glintL_run *run);
 int cli_version(const cli_options *options, cli_output *output);
-int cli_help(const cli_options *options, cli_output *output); ///< prints the help for a command or for glint
+int cli_help(cli_options *options, cli_output *output, glintL_run *run); ///< prints the help for a command or for glint
 
 #endif

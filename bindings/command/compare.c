@@ -57,8 +57,9 @@ static void print_for_people(FILE *out, char **files, const glint_compare_result
         print_share(out, result->warned, result->pixels, desc->warn);
 }
 
-int cli_compare(const cli_options *options, cli_output *output)
+int cli_compare(cli_options *options, cli_output *output, glintL_run *run)
 {
+    (void)run;
     glint_compare_desc desc = { .fail = 1e-6, .warn = 1e-6 };
     glint_compare_result result = { 0 };
     glint_error error = { .message = "" };

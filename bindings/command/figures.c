@@ -114,14 +114,14 @@ static int sheet(lua_State *L)
     return 0;
 }
 
-int cli_sheet(const cli_options *options, cli_output *output)
+int cli_sheet(cli_options *options, cli_output *output, glintL_run *run)
 {
     static const luaL_Reg functions[] = {
         { "lacks_live_script", lacks_live_script }, { "texts", texts }, { "colormaps", colormaps }, { "sheet", sheet },
         { NULL, NULL },
     };
     const glintL_carried modules[] = { cli_files_module, { "@sheet.lua", SHEET_LUA, sizeof SHEET_LUA } };
-    cli_task task = { .name = "sheet", .options = options, .output = output, .functions = functions };
+    cli_task task = { .name = "sheet", .options = options, .output = output, .run = run, .functions = functions };
     return cli_run_module(&task, modules, 2);
 }
 

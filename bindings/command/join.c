@@ -90,7 +90,7 @@ static int join(lua_State *L)
     return 2;
 }
 
-int cli_join(const cli_options *options, cli_output *output)
+int cli_join(cli_options *options, cli_output *output, glintL_run *run)
 {
     static const luaL_Reg functions[] = {
         { "read", read_picture },       { "text", cli_picture_text }, { "region", region },
@@ -98,6 +98,6 @@ int cli_join(const cli_options *options, cli_output *output)
     };
     const glintL_carried modules[] = { cli_files_module, { "@join.lua", JOIN_LUA, sizeof JOIN_LUA } };
     glintL_render render = glintL_render_default();
-    cli_task task = { .name = "join", .options = options, .output = output, .functions = functions, .own = &render };
+    cli_task task = { "join", options, output, run, functions, &render, 0 };
     return cli_run_module(&task, modules, 2);
 }

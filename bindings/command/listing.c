@@ -85,21 +85,16 @@ static int command(lua_State *L)
     return 2;
 }
 
-static int list(const char *name, const cli_options *options, cli_output *output, const glintL_carried *module)
-{
-    static const luaL_Reg functions[] = { { "tables", tables }, { "command", command }, { NULL, NULL } };
-    cli_task task = { .name = name, .options = options, .output = output, .functions = functions };
-    return cli_run_module(&task, module, 1);
-}
+static const luaL_Reg functions[] = { { "tables", tables }, { "command", command }, { NULL, NULL } };
 
-int cli_help(const cli_options *options, cli_output *output)
+int cli_help(cli_options *options, cli_output *output, glintL_run *run)
 {
     static const glintL_carried module = { "@help.lua", HELP_LUA, sizeof HELP_LUA };
-    return list("help", options, output, &module);
+    return cli_run_module(&(cli_task) { "help", options, output, run, functions, NULL, 0 }, &module, 1);
 }
 
-int cli_completion(const cli_options *options, cli_output *output)
+int cli_completion(cli_options *options, cli_output *output, glintL_run *run)
 {
     static const glintL_carried module = { "@completion.lua", COMPLETION_LUA, sizeof COMPLETION_LUA };
-    return list("completion", options, output, &module);
+    return cli_run_module(&(cli_task) { "completion", options, output, run, functions, NULL, 0 }, &module, 1);
 }

@@ -9,32 +9,6 @@
 #include "bindings/run/system.h"
 #include "bindings/command/untrusted.h"
 
-static int run_command(cli_options *options, cli_output *output, glintL_run *run)
-{
-    if (options->help)
-        return cli_describe(options, output, run);
-    switch (options->command) {
-    case CLI_EXPLAIN:
-        return cli_explain(options, output, run);
-    case CLI_WATCH:
-        return cli_watch(options, output, run);
-    case CLI_DESCRIBE:
-        return cli_describe(options, output, run);
-    case CLI_ASSEMBLE:
-        return cli_assemble(options, output, run);
-    case CLI_REPRODUCE:
-        return cli_reproduce(options, output, run);
-    case CLI_RELIGHT:
-        return cli_relight(options, output, run);
-    case CLI_PUBLISH:
-        return cli_publish(options, output, run);
-    case CLI_COST:
-        return cli_cost(options, output, run);
-    default:
-        return cli_render(options, output, run);
-    }
-}
-
 // For a script that calls os.exit, which ends the process inside the run: finished pictures are still written.
 static cli_output *open_output;
 
@@ -76,7 +50,7 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
     open_output = output;
     atexit(finish_early);
     cli_catch_signals(run);
-    int code = run_command(options, output, run);
+    int code = (options->help ? cli_describe : cli_command_row(options->command)->run)(options, output, run);
     cli_release_signals();
     *signal_number = run->interrupted;
     open_output = NULL;
@@ -87,23 +61,16 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
 
 static int dispatch(cli_options *options, cli_output *output, int *signal_number)
 {
+    const cli_command_name *command = cli_command_row(options->command);
     if (options->version)
         return cli_version(options, output);
-    if (options->command == CLI_HELP || (options->help && !options->script))
-        return cli_help(options, output);
-    if (options->command == CLI_COMPARE || options->command == CLI_SHEET || options->command == CLI_JOIN)
+    if (options->help && !options->script)
+        return cli_help(options, output, NULL);
+    if (command->needs == CLI_SIGNALS)
         cli_leave_by_signals();
-    if (options->command == CLI_COMPARE)
-        return cli_compare(options, output);
-    if (options->command == CLI_SHEET)
-        return cli_sheet(options, output);
-    if (options->command == CLI_JOIN)
-        return cli_join(options, output);
-    if (options->command == CLI_NEW)
-        return cli_new(options, output);
-    if (options->command == CLI_COMPLETION)
-        return cli_completion(options, output);
-    if (!options->script && options->command != CLI_ASSEMBLE && options->command != CLI_RELIGHT)
+    if (command->needs != CLI_RUN)
+        return command->run(options, output, NULL);
+    if (!options->script && command->words != CLI_FILES)
         return cli_report_error(output, 0, GLINTL_EXIT_USAGE,
                                 options->command == CLI_REPRODUCE
                                     ? "reproduce: a finished picture and its script expected"

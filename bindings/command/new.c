@@ -74,12 +74,12 @@ static int types(lua_State *L)
     return 0;
 }
 
-int cli_new(const cli_options *options, cli_output *output)
+int cli_new(cli_options *options, cli_output *output, glintL_run *run)
 {
     static const luaL_Reg functions[] = {
         { "make_folder", make_folder }, { "write", write_file }, { "starter", starter }, { "types", types }, { NULL, NULL },
     };
     static const glintL_carried module = { "@new.lua", NEW_LUA, sizeof NEW_LUA };
-    cli_task task = { .name = "new", .options = options, .output = output, .functions = functions };
+    cli_task task = { .name = "new", .options = options, .output = output, .run = run, .functions = functions };
     return cli_run_module(&task, &module, 1);
 }
