@@ -271,6 +271,7 @@ typedef struct cli_task {
 /// fail(code, message), print(text), event(text), say(text), number(text), nearer(word, near, candidate), and the
 /// command line. Returns the exit code.
 int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count);
+int cli_read_number(lua_State *L); ///< number(text): returns the number that the text is; nothing if it is none
 cli_task *cli_task_of(lua_State *L); ///< for C functions of a task
 /// Reports the failure, or the signal that stopped the run, and raises nil.
 int cli_task_fail(lua_State *L, int code, const char *message);

@@ -54,8 +54,7 @@ static int say(lua_State *L)
     return 0;
 }
 
-// number(text): returns the number that the text is; nil if it is none.
-static int number(lua_State *L)
+int cli_read_number(lua_State *L)
 {
     const char *text = lua_tostring(L, 1);
     char *end = NULL;
@@ -83,8 +82,8 @@ static void set_functions(lua_State *L, const cli_task *task, const luaL_Reg *fu
 static void push_command(lua_State *L, const void *context)
 {
     static const luaL_Reg common[] = {
-        { "fail", fail },     { "print", print },   { "event", event }, { "say", say },
-        { "number", number }, { "nearer", nearer }, { NULL, NULL },
+        { "fail", fail },   { "print", print },           { "event", event }, { "say", say },
+        { "nearer", nearer }, { "number", cli_read_number }, { NULL, NULL },
     };
     const cli_task *task = context;
     const cli_options *options = task->options;

@@ -7,6 +7,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "bindings/run/carried.h"
 #include "bindings/watch/watch.h"
 
 #define ANSWER_MS 150 // a terminal that has not answered by then does not support the query
@@ -175,22 +176,10 @@ static void draw_sixels(const watch_picture *picture)
 
 // ---- The kitty graphics protocol: the PNG file itself, in base 64 ----
 
-static void put_base64(const unsigned char *bytes, size_t size)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        unsigned three = (unsigned)bytes[i] << 16 | (i + 1 < size ? (unsigned)bytes[i + 1] << 8 : 0) |
-                         (i + 2 < size ? bytes[i + 2] : 0);
-        fputc(digits[three >> 18], stderr);
-        fputc(digits[three >> 12 & 63], stderr);
-        fputc(i + 1 < size ? digits[three >> 6 & 63] : '=', stderr);
-        fputc(i + 2 < size ? digits[three & 63] : '=', stderr);
-    }
-}
-
 static void draw_kitty(const watch_picture *picture)
 {
-    const size_t chunk = 3072; // 4096 base64 digits, the protocol's limit
+    enum { CHUNK = 3072 }; // bytes; their 4096 base64 digits are the protocol's limit
+    char digits[CHUNK / 3 * 4];
     place p = find_place();
     int cell_width = p.width > 0 ? p.width / p.columns : 8, cell_height = p.height > 0 ? p.height / p.rows : 16;
     int width, height;
@@ -199,14 +188,14 @@ static void draw_kitty(const watch_picture *picture)
     fit(picture, p.columns * cell_width, p.rows * cell_height, &width, &height);
     int columns = width / cell_width, rows = height / cell_height;
     fputs("\033_Ga=d,d=A,q=2\033\\", stderr); // deletes the previous picture
-    for (size_t at = 0; at < picture->size; at += chunk) {
-        size_t left = picture->size - at, size = left < chunk ? left : chunk;
+    for (size_t at = 0; at < picture->size; at += CHUNK) {
+        size_t left = picture->size - at, size = left < CHUNK ? left : CHUNK;
         if (at == 0)
             fprintf(stderr, "\033_Ga=T,f=100,q=2,c=%d,r=%d,m=%d;", columns > 0 ? columns : 1, rows > 0 ? rows : 1,
                     left > size);
         else
             fprintf(stderr, "\033_Gm=%d;", left > size);
-        put_base64(picture->bytes + at, size);
+        fwrite(digits, 1, glintL_base64(picture->bytes + at, size, digits), stderr);
         fputs("\033\\", stderr);
     }
     fputc('\n', stderr);
