@@ -167,7 +167,7 @@ static int push_own_field(lua_State *L, const glintL_job *job, const char *name)
         lua_getiuservalue(L, 1, GLINTL_JOB_FRAME);
     else if (strcmp(name, "over") == 0) {
         lua_getiuservalue(L, 1, GLINTL_JOB_FRAME);
-        glintL_call_own(L, "copy_axes", 1, 1);
+        glintL_call_own(L, "sweep", "copy_axes", 1, 1);
     } else if (strcmp(name, "sheet") == 0)
         lua_getiuservalue(L, 1, GLINTL_JOB_SHEET);
     else { // size

@@ -25,7 +25,7 @@ static void read_axes(lua_State *L, int index, int job_index)
 {
     glintL_job *job = lua_touserdata(L, job_index);
     lua_pushvalue(L, index);
-    glintL_call_own(L, "read_axes", 1, 2);
+    glintL_call_own(L, "sweep", "read_axes", 1, 2);
     job->frames = lua_tointeger(L, -1);
     lua_pop(L, 1);
     lua_setiuservalue(L, job_index, GLINTL_JOB_FRAME);
@@ -34,7 +34,7 @@ static void read_axes(lua_State *L, int index, int job_index)
 static void read_sheet(lua_State *L, int index, int job_index)
 {
     lua_pushvalue(L, index);
-    glintL_call_own(L, "check_sheet_fields", 1, 0);
+    glintL_call_own(L, "sweep_sheet", "check_fields", 1, 0);
     lua_pushvalue(L, index);
     lua_setiuservalue(L, job_index, GLINTL_JOB_SHEET);
 }
@@ -48,7 +48,7 @@ static void check_together(lua_State *L, int index)
     if (lua_getiuservalue(L, index, GLINTL_JOB_SHEET) == LUA_TTABLE &&
         lua_getiuservalue(L, index, GLINTL_JOB_FRAME) != LUA_TNIL) {
         lua_pushinteger(L, job->frames);
-        glintL_call_own(L, "check_sheet_of_axes", 3, 0);
+        glintL_call_own(L, "sweep_sheet", "check", 3, 0);
     }
     lua_settop(L, top);
 }
@@ -82,7 +82,7 @@ void glintL_sweep_build(lua_State *L, int index, int64_t n)
     lua_getiuservalue(L, index, GLINTL_JOB_FRAME);
     lua_getiuservalue(L, index, GLINTL_JOB_SAVED);
     lua_pushinteger(L, n);
-    glintL_call_own(L, "set_axes", 3, 2);
+    glintL_call_own(L, "sweep", "set_axes", 3, 2);
     lua_setiuservalue(L, index, GLINTL_JOB_SAVED);
     lua_setiuservalue(L, index, GLINTL_JOB_PLACE);
 }
@@ -92,7 +92,7 @@ void glintL_sweep_restore(lua_State *L, int index)
     luaL_checkstack(L, 4, "sweep");
     lua_getiuservalue(L, index, GLINTL_JOB_FRAME);
     if (lua_getiuservalue(L, index, GLINTL_JOB_SAVED) == LUA_TTABLE) {
-        glintL_call_own(L, "restore_axes", 2, 0);
+        glintL_call_own(L, "sweep", "restore_axes", 2, 0);
         lua_pushnil(L);
         lua_setiuservalue(L, index, GLINTL_JOB_SAVED);
     } else {

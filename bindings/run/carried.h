@@ -21,8 +21,9 @@ typedef struct glintL_carried {
 
 /// Retains Lua's functions for the modules in this state.
 void glintL_open_own(lua_State *L);
-/// Calls a function of the modules, like lua_call: the arguments are on top of the stack.
-void glintL_call_own(lua_State *L, const char *function, int arguments, int results);
+/// Calls a function of a module, like lua_call: the arguments are on top of the stack. A module is loaded when it is
+/// first used.
+void glintL_call_own(lua_State *L, const char *module, const char *function, int arguments, int results);
 extern const luaL_Reg glintL_sheet_functions[], glintL_sweep_functions[]; ///< C functions for the modules
 
 // ---- carried.c ----

@@ -69,7 +69,7 @@ void glintL_walk_add_axes(glintL_walk *walk, glintL_order *order)
         glintL_order_axis *axis = glintL_order_add(order, (int64_t)lua_rawlen(L, -1));
         lua_pushvalue(L, axes);
         lua_pushinteger(L, i);
-        glintL_call_own(L, "title_of_axis", 2, 1);
+        glintL_call_own(L, "sweep", "title_of_axis", 2, 1);
         snprintf(axis->name, sizeof axis->name, "%s", lua_tostring(L, -1));
         lua_settop(L, axes);
     }

@@ -1,11 +1,12 @@
 // The Lua modules of bindings/run, which work on a script's objects in the script's state, and functions for them.
+#include <string.h>
 #include <unistd.h>
 
 #include "bindings/run/carried.h"
 
 #include "bindings/run/modules.h" // LIBRARY
 
-// Registry keys of two tables: the functions of Lua that the modules see, and their own.
+// Registry keys of two tables: the functions of Lua that the modules see, and the modules.
 static const char STANDARD, OWN;
 
 // ---- Values, and messages about them ----
@@ -97,7 +98,26 @@ void glintL_open_own(lua_State *L)
     lua_rawsetp(L, LUA_REGISTRYINDEX, &STANDARD);
 }
 
-// Pushes the table of the modules' functions. The modules run when it is first used.
+// Loads the module with this name. 1: the table of the modules, 2: the name.
+static int load_module(lua_State *L)
+{
+    static const char folder[] = "bindings.run.";
+    const char *name = luaL_checkstring(L, 2);
+    size_t i = 0;
+    while (strcmp(LIBRARY[i].name + sizeof folder - 1, name) != 0)
+        if (++i == sizeof LIBRARY / sizeof *LIBRARY)
+            return 0;
+    glintL_load_stripped(L, &LIBRARY[i]);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &STANDARD);
+    lua_setupvalue(L, -2, 1);
+    lua_pushvalue(L, 1);
+    lua_call(L, 1, 1);
+    lua_pushvalue(L, -1);
+    lua_setfield(L, 1, name);
+    return 1;
+}
+
+// Pushes the table of the modules, which has the C functions as well.
 static void push_own(lua_State *L)
 {
     static const luaL_Reg tools[] = {
@@ -115,22 +135,20 @@ static void push_own(lua_State *L)
     luaL_setfuncs(L, glintL_sheet_functions, 0);
     luaL_setfuncs(L, glintL_sweep_functions, 0);
     glintL_set_text(L, "version", GLINT_VERSION);
-    for (size_t i = 0; i < sizeof LIBRARY / sizeof *LIBRARY; i++) {
-        glintL_load_stripped(L, &LIBRARY[i]);
-        lua_rawgetp(L, LUA_REGISTRYINDEX, &STANDARD);
-        lua_setupvalue(L, -2, 1);
-        lua_pushvalue(L, -2);
-        lua_call(L, 1, 0);
-    }
+    lua_createtable(L, 0, 1);
+    glintL_set_function(L, "__index", load_module);
+    lua_setmetatable(L, -2);
     lua_pushvalue(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &OWN);
 }
 
-void glintL_call_own(lua_State *L, const char *function, int arguments, int results)
+void glintL_call_own(lua_State *L, const char *module, const char *function, int arguments, int results)
 {
     push_own(L);
+    lua_getfield(L, -1, module);
     lua_getfield(L, -1, function);
-    lua_replace(L, -2);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
     lua_insert(L, -1 - arguments);
     lua_call(L, arguments, results);
 }

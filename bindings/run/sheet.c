@@ -143,7 +143,7 @@ static int draw_sheet(lua_State *L)
 
 // ---- The page ----
 
-static int sheet_page(lua_State *L)
+static int page_of_sheets(lua_State *L)
 {
     lua_pushlstring(L, PAGE, sizeof PAGE);
     return 1;
@@ -196,12 +196,12 @@ static int write_page(lua_State *L)
 
 const luaL_Reg glintL_sheet_functions[] = {
     { "read_picture", read_picture }, { "match_pictures", match_pictures }, { "draw_sheet", draw_sheet },
-    { "sheet_page", sheet_page },     { "write_page", write_page },         { NULL, NULL },
+    { "page_of_sheets", page_of_sheets },     { "write_page", write_page },         { NULL, NULL },
 };
 
 int glintL_sheet_make(lua_State *L, char message[GLINTL_MESSAGE_SIZE])
 {
-    glintL_call_own(L, "make_sheet", 1, 2);
+    glintL_call_own(L, "sheet", "make", 1, 2);
     const int code = (int)lua_tointeger(L, -2);
     if (code)
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s", lua_tostring(L, -1));

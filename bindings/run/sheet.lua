@@ -6,6 +6,7 @@
 -- axis stands for all others), `label` (with {name} for a value, or "none"), `title`, `columns`, `difference`, `gain`,
 -- `size`, `dpi`, `transparent`, `colorbar`, `mixes` (files may come from different scripts or settings), `live`.
 local the = ...
+local M, finder = {}, the.sheet_axes
 local format, find, match, gsub, sub, lower = string.format, string.find, string.match, string.gsub, string.sub,
   string.lower
 local concat, ipairs, tonumber = table.concat, ipairs, tonumber
@@ -14,10 +15,10 @@ local FAILED <const>, USAGE <const> = 1, 2 -- exit codes
 local NAME_MAX <const>, FORMAT_MAX <const> = 100, 80 -- bytes
 local LABEL_MAX <const> = 511 -- bytes
 local ROW_MAX <const> = 6 -- cells of a single axis in one row, unless columns are given
-the.GAIN = 8 -- of differences, unless the sheet has one
-the.SHEET_MAX = 100000 -- cells
+M.GAIN = 8 -- of differences, unless the sheet has one
+M.MAX = 100000 -- cells
 
-function the.ends_in(path, ending) return find(lower(path), "[^/]%." .. ending .. "$") ~= nil end
+function M.ends_in(path, ending) return find(lower(path), "[^/]%." .. ending .. "$") ~= nil end
 
 -- ---- Checks that do not need the files ----
 
@@ -43,7 +44,7 @@ local function check_name(text)
 end
 
 local function check_lines(field, lines, check)
-  for _, line in ipairs(the.split_lines(lines)) do
+  for _, line in ipairs(finder.split_lines(lines)) do
     local text = match(line, "=(.*)")
     local wrong = text and check(text)
     if not text then wrong = format("%s: AXIS=TEXT expected, got '%s'", field, sub(line, 1, 100)) end
@@ -52,13 +53,13 @@ local function check_lines(field, lines, check)
 end
 
 -- Returns what is wrong with a sheet of `count` pictures, before its files are read; nil: nothing.
-function the.check_sheet(sheet, count)
+function M.check(sheet, count)
   local path = sheet.path
-  local is_page = the.ends_in(path, "html")
-  if not is_page and not the.ends_in(path, "png") and not the.ends_in(path, "svg") and not the.ends_in(path, "pdf") then
+  local is_page = M.ends_in(path, "html")
+  if not is_page and not M.ends_in(path, "png") and not M.ends_in(path, "svg") and not M.ends_in(path, "pdf") then
     return format("a file name ending in .png, .svg, .pdf or .html expected, got '%s'", sub(path, 1, 200))
-  elseif count < 1 or count > the.SHEET_MAX then
-    return format("pictures: 1 .. %d expected, got %d", the.SHEET_MAX, count)
+  elseif count < 1 or count > M.MAX then
+    return format("pictures: 1 .. %d expected, got %d", M.MAX, count)
   end
   local wrong = check_lines("names", sheet.names, check_name) or check_lines("format", sheet.formats, check_format)
   if wrong then
@@ -76,10 +77,10 @@ function the.check_sheet(sheet, count)
 end
 
 local function check_known(field, lines, axes, has_default)
-  for _, line in ipairs(the.split_lines(lines)) do
+  for _, line in ipairs(finder.split_lines(lines)) do
     local name, near = match(line, "^[^=]*"), nil
-    if not the.find_line(axes, name) and not (has_default and name == "") then
-      for _, axis in ipairs(the.split_lines(axes)) do near = the.nearer(name, near, match(axis, "^[^=]*")) end
+    if not finder.find_line(axes, name) and not (has_default and name == "") then
+      for _, axis in ipairs(finder.split_lines(axes)) do near = the.nearer(name, near, match(axis, "^[^=]*")) end
       return format("%s: the sheet has no axis '%s'%s", field, sub(name, 1, NAME_MAX),
         near and format("; did you mean '%s'?", near) or "")
     end
@@ -87,20 +88,20 @@ local function check_known(field, lines, axes, has_default)
 end
 
 -- Checks that `names` and `formats` are of axes in `axes`, which has "axis=..." lines. Returns what is wrong, or nil.
-function the.check_sheet_axes(sheet, axes)
+function M.check_axes(sheet, axes)
   return check_known("names", sheet.names, axes, false) or check_known("format", sheet.formats, axes, true)
 end
 
 -- ---- Names, values and labels ----
 
-function the.axis_title(sheet, axis) return the.find_line(sheet.names, axis.name) or axis.name end
+function M.axis_title(sheet, axis) return finder.find_line(sheet.names, axis.name) or axis.name end
 
 -- Returns value `i` of an axis as the sheet shows it.
-function the.spell_value(sheet, axis, i)
+function M.spell_value(sheet, axis, i)
   local value = axis.values[i]
   local number = tonumber(value)
   if not number then return sub(value, 1, 60) end
-  local given = the.find_line(sheet.formats, axis.name) or the.find_line(sheet.formats, "")
+  local given = finder.find_line(sheet.formats, axis.name) or finder.find_line(sheet.formats, "")
   return sub(format(given or (number < 1e4 and number > -1e4 and "%.4g" or "%.6g"), number), 1, LABEL_MAX)
 end
 
@@ -108,8 +109,8 @@ end
 local function spell_cell(sheet, axes, first, last, cell, named, separator)
   local out = {}
   for a = first, last do
-    local value = the.spell_value(sheet, axes[a], axes[a].index[cell])
-    out[#out + 1] = named and the.axis_title(sheet, axes[a]) .. " = " .. value or value
+    local value = M.spell_value(sheet, axes[a], axes[a].index[cell])
+    out[#out + 1] = named and M.axis_title(sheet, axes[a]) .. " = " .. value or value
   end
   return sub(concat(out, separator), 1, LABEL_MAX)
 end
@@ -133,7 +134,7 @@ end
 
 local function label_value(sheet, axes, pictures, cell, name)
   for _, axis in ipairs(axes) do
-    if axis.name == name then return the.spell_value(sheet, axis, axis.index[cell]) end
+    if axis.name == name then return M.spell_value(sheet, axis, axis.index[cell]) end
   end
   return name == "file" and base_name(sheet.files[cell]) or name == "frame" and frame_of(pictures, cell) or nil
 end
@@ -209,7 +210,7 @@ end
 
 local function list_names(sheet, axes, first, last)
   local names = {}
-  for a = first, last do names[#names + 1] = the.axis_title(sheet, axes[a]) end
+  for a = first, last do names[#names + 1] = M.axis_title(sheet, axes[a]) end
   return concat(names, ", ")
 end
 
@@ -240,29 +241,31 @@ end
 
 local function draw(sheet, axes, labels)
   local drawing = { path = sheet.path, files = sheet.files, labels = labels, columns = columns_of(sheet, axes),
-    title = sheet.title, difference = sheet.difference, gain = sheet.gain or the.GAIN, size = sheet.size,
+    title = sheet.title, difference = sheet.difference, gain = sheet.gain or M.GAIN, size = sheet.size,
     dpi = sheet.dpi, transparent = sheet.transparent, colorbar = sheet.colorbar, block_rows = 0 }
   if axes.across then surround(sheet, axes, drawing) end
   return the.draw_sheet(drawing)
 end
 
 -- Makes a sheet. Returns the exit code, and a message unless it is 0.
-function the.make_sheet(sheet)
-  local wrong = the.check_sheet(sheet, #sheet.files)
+function M.make(sheet)
+  local wrong = M.check(sheet, #sheet.files)
   if wrong then return USAGE, wrong end
-  local pictures, code, message = the.read_files(sheet)
+  local pictures, code, message = finder.read_files(sheet)
   if not pictures then return code or FAILED, message end
-  local axes, lines = the.find_axes(sheet, pictures), {}
+  local axes, lines = finder.find(sheet, pictures), {}
   for i, axis in ipairs(axes) do lines[i] = axis.name .. "=\n" end
-  local columns, is_page = columns_of(sheet, axes), the.ends_in(sheet.path, "html")
+  local columns, is_page = columns_of(sheet, axes), M.ends_in(sheet.path, "html")
   axes.across = axes.is_grid and count_across(axes, columns)
   axes.frames_differ = frames_differ(pictures)
   axes.has_heads = axes.is_grid and not sheet.labels and not sheet.label -- heads name the values of the axes
   axes.is_wrapped = #axes == 1 and not is_page and columns < #axes[1].values -- a value below each picture instead
-  wrong = the.check_sheet_axes(sheet, concat(lines)) or check_columns(sheet, axes)
+  wrong = M.check_axes(sheet, concat(lines)) or check_columns(sheet, axes)
   if wrong then return USAGE, wrong end
   local labels, unknown = make_labels(sheet, axes, pictures)
   if not labels then return USAGE, unknown end
-  if is_page then return the.make_sheet_page(sheet, axes, pictures, labels) end
+  if is_page then return the.sheet_page.make(sheet, axes, pictures, labels) end
   return draw(sheet, axes, labels)
 end
+
+return M

@@ -1,5 +1,6 @@
 -- The axes of a sheet: the values that distinguish its cells. Reads the files.
 local the = ...
+local M = {}
 local format, find, match, gmatch, sub = string.format, string.find, string.match, string.gmatch, string.sub
 local sort, ipairs = table.sort, ipairs
 
@@ -9,7 +10,7 @@ local AXES_MAX <const> = 16
 -- ---- "name=value" lines ----
 
 -- Returns the list of lines.
-function the.split_lines(lines)
+function M.split_lines(lines)
   local out = {}
   if lines and lines ~= "" then
     for line in gmatch(lines, "([^\n]*)\n?") do out[#out + 1] = line end
@@ -18,7 +19,7 @@ function the.split_lines(lines)
 end
 
 -- Returns the value of the line "name=value", or nil.
-function the.find_line(lines, name)
+function M.find_line(lines, name)
   local _, last = find("\n" .. (lines or ""), "\n" .. name .. "=", 1, true)
   return last and match(lines, "[^\n]*", last)
 end
@@ -26,7 +27,7 @@ end
 -- ---- The files and their axes ----
 
 -- Reads the files. Returns nil, the exit code and a message if one is missing, or differs in size or origin.
-function the.read_files(sheet)
+function M.read_files(sheet)
   local pictures = {}
   for i, path in ipairs(sheet.files) do
     local picture, code, message = the.read_picture(path)
@@ -59,10 +60,10 @@ end
 
 -- Adds an axis for every name in the first cell's lines; without `all`, only for names whose values differ.
 local function add_axes(axes, lines_of, all)
-  for _, line in ipairs(the.split_lines(lines_of(1))) do
+  for _, line in ipairs(M.split_lines(lines_of(1))) do
     local name = match(line, "^([^=]*)=")
     if name and not axes.known[name] and #axes < AXES_MAX then
-      local axis = new_axis(name, axes.cells, function(cell) return the.find_line(lines_of(cell), name) or "-" end)
+      local axis = new_axis(name, axes.cells, function(cell) return M.find_line(lines_of(cell), name) or "-" end)
       if all or #axis.values > 1 then
         axes[#axes + 1], axes.known[name] = axis, true
       end
@@ -95,7 +96,7 @@ local function sort_axes(axes)
 end
 
 -- Finds the axes: first the axes of sweeps, then the parameters, options and passes that differ.
-function the.find_axes(sheet, pictures)
+function M.find(sheet, pictures)
   local axes = { cells = #pictures, known = {} }
   local function texts(keyword) return function(cell) return pictures[cell][keyword] end end
   local positions = sheet.positions
@@ -112,3 +113,5 @@ function the.find_axes(sheet, pictures)
   end
   return axes
 end
+
+return M

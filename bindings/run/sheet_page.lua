@@ -1,5 +1,6 @@
 -- A sheet as one HTML page: a slider for each axis, with the pictures as data URIs. The page needs no other files.
 local the = ...
+local M, sheets = {}, the.sheet
 local format, match, gsub, sub = string.format, string.match, string.gsub, string.sub
 local concat, ipairs = table.concat, ipairs
 
@@ -21,23 +22,25 @@ local function list_axes(sheet, axes)
   local out = {}
   for a, axis in ipairs(axes) do
     local values = {}
-    for i in ipairs(axis.values) do values[i] = quoted(the.spell_value(sheet, axis, i)) end
-    out[a] = "  { name: " .. quoted(the.axis_title(sheet, axis)) .. ", values: [" .. concat(values, ", ") .. "] },\n"
+    for i in ipairs(axis.values) do values[i] = quoted(sheets.spell_value(sheet, axis, i)) end
+    out[a] = "  { name: " .. quoted(sheets.axis_title(sheet, axis)) .. ", values: [" .. concat(values, ", ") .. "] },\n"
   end
   return concat(out)
 end
 
 -- Writes the page. Returns the exit code and a message.
-function the.make_sheet_page(sheet, axes, pictures, labels)
+function M.make(sheet, axes, pictures, labels)
   local quotes, title = {}, html(sheet.title or "Contact sheet")
   for i, picture in ipairs(pictures) do
     if picture.bits > 16 then return USAGE, sub(sheet.files[i], 1, 300) .. ": a page shows only .png files" end
     quotes[i] = quoted(labels[i]) .. ",\n"
   end
   local fields = { VERSION = the.version, TITLE = title, HEADING = sheet.title and "<h1>" .. title .. "</h1>\n" or "",
-    DIFFERENCE = format("%d", sheet.difference or 0), GAIN = format("%g", sheet.gain or the.GAIN),
+    DIFFERENCE = format("%d", sheet.difference or 0), GAIN = format("%g", sheet.gain or sheets.GAIN),
     GRID = axes.is_grid and "true" or "false", AXES = list_axes(sheet, axes), LABELS = concat(quotes),
     LIVE = sheet.live and "<h2>Try it</h2>\n" .. sheet.live or "" }
-  local head, tail = match(the.sheet_page(), "^(.*)@PICTURES@(.*)$")
+  local head, tail = match(the.page_of_sheets(), "^(.*)@PICTURES@(.*)$")
   return the.write_page(sheet.path, (gsub(head, "@(%u+)@", fields)), sheet.files, tail)
 end
+
+return M

@@ -1,6 +1,7 @@
 -- The axes of glint.sweep: a list of { object, "field", { values } }, of which the first changes fastest. Reads them,
 -- sets the scene to a frame, and names axes and values for files and labels.
 local the = ...
+local M = {}
 local format, gsub = string.format, string.gsub
 local concat, sort = table.concat, table.sort
 local ipairs, next, rawget, rawlen, tostring, type = ipairs, next, rawget, rawlen, tostring, type
@@ -10,7 +11,7 @@ local AXES_MAX <const>, FRAMES_MAX <const> = 16, 100000000
 -- ---- Reading ----
 
 -- Returns a copy of a list of axes, which the script cannot change later.
-function the.copy_axes(axes)
+function M.copy_axes(axes)
   local copy = {}
   for i = 1, rawlen(axes) do
     local axis = rawget(axes, i)
@@ -37,7 +38,7 @@ local function check_axis(axis, path)
 end
 
 -- Reads sweep.over. Returns a copy of the axes and the number of frames.
-function the.read_axes(over)
+function M.read_axes(over)
   if type(over) ~= "table" then the.refuse(over, "sweep.over", "list of axes") end
   local count, frames = the.check_list(over, "sweep.over"), 1
   if count == 0 or count > AXES_MAX then
@@ -47,7 +48,7 @@ function the.read_axes(over)
     frames = frames * check_axis(rawget(over, i), format("sweep.over[%d]", i))
     if frames > FRAMES_MAX then the.raise(format("sweep.over: at most %d frames expected", FRAMES_MAX)) end
   end
-  return the.copy_axes(over), frames
+  return M.copy_axes(over), frames
 end
 
 -- ---- Names and values ----
@@ -62,7 +63,7 @@ local function name_of(axes, i)
 end
 
 -- Returns "object.field" for an axis, or only its name if the object has none.
-function the.title_of_axis(axes, i)
+function M.title_of_axis(axes, i)
   local name = the.name_of_object(axes[i][1])
   return name and name .. "." .. axes[i][2] or name_of(axes, i)
 end
@@ -106,14 +107,14 @@ local function each_value(axes, n)
 end
 
 -- Returns "name=value" lines for frame n, one per axis.
-function the.place_of_frame(axes, n)
+function M.place_of_frame(axes, n)
   local lines = {}
   for i, _, value, at in each_value(axes, n) do lines[i] = name_of(axes, i) .. "=" .. spell(value, at) end
   return concat(lines, "\n")
 end
 
 -- Returns the table name -> value for frame n.
-function the.values_of_frame(axes, n)
+function M.values_of_frame(axes, n)
   local values = {}
   for i, _, value in each_value(axes, n) do values[name_of(axes, i)] = value end
   return values
@@ -123,18 +124,20 @@ end
 
 -- Sets the fields to their values at frame n. Returns the frame's place, and the values that the fields had before the
 -- first frame.
-function the.set_axes(axes, saved, n)
+function M.set_axes(axes, saved, n)
   if not saved then
     saved = {}
     for i, axis in ipairs(axes) do saved[i] = axis[1][axis[2]] end
   end
   for _, axis, value in each_value(axes, n) do axis[1][axis[2]] = value end
-  return the.place_of_frame(axes, n), saved
+  return M.place_of_frame(axes, n), saved
 end
 
 -- Restores the values that the fields had before the first frame.
-function the.restore_axes(axes, saved)
+function M.restore_axes(axes, saved)
   for i, axis in ipairs(axes) do
     if saved[i] ~= nil then axis[1][axis[2]] = saved[i] end
   end
 end
+
+return M

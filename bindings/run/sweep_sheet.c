@@ -108,7 +108,7 @@ static int draw_protected(lua_State *L)
     glintL_set_flag(L, "is_verbatim", naming->is_plain || naming->film);
     glintL_set_flag(L, "is_swept", run->point_count > 1);
     glintL_set_flag(L, "is_partial", what->partial);
-    glintL_call_own(L, "make_sweep_sheet", 4, 0);
+    glintL_call_own(L, "sweep_sheet", "make", 4, 0);
     return 0;
 }
 

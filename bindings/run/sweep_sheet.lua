@@ -3,6 +3,7 @@
 --     sheet = { label = true, names = { shininess = "n" }, format = "%.0f", passes = true, columns = 4, difference = 1,
 --               gain = 8, title = "...", colorbar = bar, output = "sheet.png" }
 local the = ...
+local M, sheets, sweep = {}, the.sheet, the.sweep
 local format, find, match, gmatch = string.format, string.find, string.match, string.gmatch
 local concat, ipairs, next, tostring, type = table.concat, ipairs, next, tostring, type
 local floor, tointeger = math.floor, math.tointeger
@@ -44,12 +45,12 @@ end
 
 local function output(value, path)
   text("file name")(value, path)
-  local wrong = the.check_sheet({ path = value }, 1)
+  local wrong = sheets.check({ path = value }, 1)
   if wrong then the.raise(path .. ": " .. wrong) end
 end
 
 local CHECKS <const> = { label = label, columns = number(1, 65535, "whole number 1 .. 65535", true),
-  difference = number(1, the.SHEET_MAX, "number of a frame, from 1,", true),
+  difference = number(1, sheets.MAX, "number of a frame, from 1,", true),
   gain = number(1e-3, 1e6, "number 0.001 .. 1000000"), size = number(1, 10000, "points 1 .. 10000"),
   dpi = number(0, 1e6, "number 0 .. 1000000"), names = texts, transparent = flag, passes = flag,
   title = text("text"), output = output,
@@ -62,7 +63,7 @@ local CHECKS <const> = { label = label, columns = number(1, 65535, "whole number
   end }
 
 -- Checks the fields of sweep.sheet.
-function the.check_sheet_fields(sheet)
+function M.check_fields(sheet)
   if type(sheet) ~= "table" then the.refuse(sheet, "sweep.sheet", "table") end
   for name, value in next, sheet do
     if type(name) ~= "string" then the.bad_key(name, "sweep.sheet") end
@@ -89,13 +90,13 @@ local function describe(sheet, path)
 end
 
 -- Checks a sheet against the axes of its sweep.
-function the.check_sheet_of_axes(sheet, axes, frames)
-  local lines = the.place_of_frame(axes, 1) .. (sheet.passes and "\npass=" or "")
+function M.check(sheet, axes, frames)
+  local lines = sweep.place_of_frame(axes, 1) .. (sheet.passes and "\npass=" or "")
   local described = describe(sheet, sheet.output or "sheet.png")
-  local wrong = the.check_sheet(described, frames) or the.check_sheet_axes(described, lines)
+  local wrong = sheets.check(described, frames) or sheets.check_axes(described, lines)
   if wrong then the.raise("sweep.sheet." .. wrong) end
   for name in gmatch(type(sheet.label) == "string" and sheet.label or "", "{([^}]*)}") do
-    if not the.find_line(lines, name) and name ~= "file" and name ~= "frame" then
+    if not the.sheet_axes.find_line(lines, name) and name ~= "file" and name ~= "frame" then
       the.raise(format("sweep.sheet.label: {%s}: the name of an axis, {file} or {frame} expected", name))
     end
   end
@@ -127,7 +128,7 @@ end
 
 -- Returns a label from the script's function(values, n, pass), with values[name] = value for each axis.
 local function call_label(of, axes, n, pass)
-  local result = of(the.values_of_frame(axes, n), n, pass)
+  local result = of(sweep.values_of_frame(axes, n), n, pass)
   if type(result) ~= "string" and type(result) ~= "number" then
     the.refuse(result, "sweep.sheet.label: the function's result", "string")
   end
@@ -136,12 +137,12 @@ end
 
 -- Adds the cells to a described sheet. The passes change fastest.
 local function add_cells(described, axes, frames, what, passes, of)
-  if frames > the.SHEET_MAX // #passes then
-    the.raise(format("sweep.sheet: at most %d pictures expected", the.SHEET_MAX))
+  if frames > sheets.MAX // #passes then
+    the.raise(format("sweep.sheet: at most %d pictures expected", sheets.MAX))
   end
   local files, positions, labels = {}, {}, of and {}
   for n = 1, frames do
-    local position = the.place_of_frame(axes, n)
+    local position = sweep.place_of_frame(axes, n)
     for _, pass in ipairs(passes) do
       local cell = #files + 1
       files[cell], positions[cell] = the.name_file(what.naming, what.first + n - 1, pass), position
@@ -169,7 +170,7 @@ end
 -- passes that are `rendered`, the pictures' `dpi`, the `live` HTML, and the flags `is_verbatim` (the pattern has no
 -- place for a number), `is_swept` (by --sweep) and `is_partial` (some frames were not selected, so that missing files
 -- only give a note).
-function the.make_sweep_sheet(sheet, axes, frames, what)
+function M.make(sheet, axes, frames, what)
   local path, passes = sheet.output or default_output(what.pattern, what.is_verbatim), list_passes(sheet, what.rendered)
   if what.first > 1 and (not sheet.output or what.is_swept) then -- a later sweep of the same run
     local stem, ending = match(path, "^(.*)(%.[^.]*)$")
@@ -181,9 +182,11 @@ function the.make_sweep_sheet(sheet, axes, frames, what)
   if not the.note_written("sheet", path, what.first) then return end
   local code, message = 0, what.is_partial and note_missing(described.files, what.first, #passes)
   if not message then
-    code, message = the.make_sheet(described)
+    code, message = sheets.make(described)
     if code == 0 then return the.report_figure("sheet", path, #described.files) end
     message = what.is_partial and "not drawn: " .. message or message
   end
   if what.is_partial then the.note(path .. ": " .. message) else the.fail_run(code, path .. ": " .. message) end
 end
+
+return M
