@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "engine/base/sequence.h"
+#include "engine/effects/environment/plan.h"
 #include "engine/effects/environment/sky.h"
-#include "engine/plan/plan.h"
 #include "engine/program/program.h"
 #include "tests/engine/cases/builder_case.h"
 
