@@ -135,6 +135,8 @@ struct cli_option {
 #define CLI_OPTION_COUNT 73
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 bool cli_option_may_lack(const cli_option *option); ///< returns whether the option's value is optional
+/// Pushes a table of the options that were given and whose values are flags, texts or numbers.
+void cli_push_options(lua_State *L, const cli_options *options);
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_request *request, const char *name, const char *text);
 

@@ -15,23 +15,6 @@ static const unsigned char ASSEMBLE_LUA[] = {
 
 // ---- Sheets ----
 
-static int lacks_live_script(lua_State *L)
-{
-    const cli_options *options = cli_task_of(L)->options;
-    lua_pushboolean(L, options->is_live && !options->live_script);
-    return 1;
-}
-
-// texts(): returns the texts of --colorbar, --names and --format.
-static int texts(lua_State *L)
-{
-    const cli_options *options = cli_task_of(L)->options;
-    lua_pushstring(L, options->colorbar);
-    lua_pushstring(L, options->names);
-    lua_pushstring(L, options->format);
-    return 3;
-}
-
 // colormaps(): returns the names of the colour maps, and the size of a colour bar's title, bytes.
 static int colormaps(lua_State *L)
 {
@@ -59,32 +42,7 @@ static glint_overlay_desc read_colorbar(lua_State *L, int index)
     return bar;
 }
 
-static double dpi_of(const cli_options *options)
-{
-    const char *text = options->request.render_text[glintL_render_find("dpi")];
-    return text ? strtod(text, NULL) : 0; // checked when the option was read
-}
-
-// Adds the options to the description of the sheet, on top of the stack.
-static void add_options(lua_State *L, const cli_options *options)
-{
-    glintL_set_text(L, "path", options->output);
-    glintL_set_text(L, "label", options->label);
-    glintL_set_text(L, "title", options->title);
-    if (options->columns)
-        glintL_set_whole(L, "columns", options->columns);
-    if (options->difference)
-        glintL_set_whole(L, "difference", options->difference);
-    if (options->gain > 0)
-        glintL_set_number(L, "gain", options->gain);
-    if (options->label_size > 0)
-        glintL_set_number(L, "size", options->label_size);
-    glintL_set_number(L, "dpi", dpi_of(options));
-    glintL_set_flag(L, "transparent", options->transparent);
-    glintL_set_flag(L, "mixes", options->request.force);
-}
-
-// sheet({ files, names, formats, colorbar }): makes the sheet.
+// sheet(description): makes the sheet, see bindings/run/sheet.lua.
 static int sheet(lua_State *L)
 {
     const cli_task *task = cli_task_of(L);
@@ -104,7 +62,6 @@ static int sheet(lua_State *L)
     if (options->is_live && !live)
         return cli_task_fail(L, code, message);
     lua_settop(L, 1);
-    add_options(L, options);
     glintL_set_text(L, "live", live);
     free(live);
     code = glintL_sheet_make(L, message);
@@ -116,10 +73,7 @@ static int sheet(lua_State *L)
 
 int cli_sheet(cli_options *options, cli_output *output, glintL_run *run)
 {
-    static const luaL_Reg functions[] = {
-        { "lacks_live_script", lacks_live_script }, { "texts", texts }, { "colormaps", colormaps }, { "sheet", sheet },
-        { NULL, NULL },
-    };
+    static const luaL_Reg functions[] = { { "colormaps", colormaps }, { "sheet", sheet }, { NULL, NULL } };
     const glintL_carried modules[] = { cli_files_module, { "@sheet.lua", SHEET_LUA, sizeof SHEET_LUA } };
     cli_task task = { .name = "sheet", .options = options, .output = output, .run = run, .functions = functions };
     return cli_run_module(&task, modules, 2);
@@ -127,18 +81,12 @@ int cli_sheet(cli_options *options, cli_output *output, glintL_run *run)
 
 // ---- Films ----
 
-static double fps_of(const glintL_run *run) { return run->request.fps > 0 ? run->request.fps : 24; }
-
-// film(): returns the kind of the film in -o, its frames per second, and whether --apng is given.
-static int film(lua_State *L)
+// film_kind(path): returns the kind of a film.
+static int film_kind(lua_State *L)
 {
     static const char *const kinds[] = { "none", "apng", "mp4", "webm", "gif" }; // see glintL_film_kind
-    const cli_task *task = cli_task_of(L);
-    const char *path = task->options->output;
-    lua_pushstring(L, kinds[path ? glintL_film_kind_of(path, true) : GLINTL_FILM_NONE]);
-    lua_pushnumber(L, fps_of(task->run));
-    lua_pushboolean(L, task->options->request.apng);
-    return 3;
+    lua_pushstring(L, kinds[glintL_film_kind_of(luaL_checkstring(L, 1), true)]);
+    return 1;
 }
 
 // assemble(files): makes the film.
@@ -147,7 +95,8 @@ static int assemble(lua_State *L)
     const cli_task *task = cli_task_of(L);
     glintL_run *run = task->run;
     char message[GLINTL_MESSAGE_SIZE], *path = (char *)(uintptr_t)task->options->output; // read only
-    glintL_film made = { .path = path, .kind = glintL_film_kind_of(path, true), .fps = fps_of(run) };
+    glintL_film made = { .path = path, .kind = glintL_film_kind_of(path, true) };
+    made.fps = run->request.fps > 0 ? run->request.fps : 24;
     made.files = cli_push_files(L, 1, &made.count);
     int code = GLINTL_EXIT_USAGE;
     if (glintL_film_check_files(&made, !run->request.force, message))
@@ -160,7 +109,7 @@ static int assemble(lua_State *L)
 
 int cli_assemble(cli_options *options, cli_output *output, glintL_run *run)
 {
-    static const luaL_Reg functions[] = { { "film", film }, { "assemble", assemble }, { NULL, NULL } };
+    static const luaL_Reg functions[] = { { "film_kind", film_kind }, { "assemble", assemble }, { NULL, NULL } };
     const glintL_carried modules[] = { cli_files_module, { "@assemble.lua", ASSEMBLE_LUA, sizeof ASSEMBLE_LUA } };
     cli_task task = { .name = "assemble", .options = options, .output = output, .run = run, .functions = functions };
     if (!output->quiet)

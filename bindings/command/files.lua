@@ -90,10 +90,10 @@ function the.files(my)
   else
     list = list_words(my, most)
   end
-  local target, is_file = my.identify(my.output)
+  local target, is_file = my.identify(my.options.output)
   for _, file in ipairs(is_file and list or {}) do
     if my.identify(file) == target then
-      my.fail(2, "-o: '" .. my.output .. "' is one of the input pictures; give another file")
+      my.fail(2, "-o: '" .. my.options.output .. "' is one of the input pictures; give another file")
     end
   end
   return list

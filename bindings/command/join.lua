@@ -51,7 +51,7 @@ local function texts_of(my, part, options)
 end
 
 function the.run(my)
-  if not (my.output and my.output:lower():find "%.png$") then my.fail(2, "-o NAME.png expected") end
+  if not (my.options.output and my.options.output:lower():find "%.png$") then my.fail(2, "-o NAME.png expected") end
   local parts = {}
   for i, path in ipairs(the.files(my)) do parts[i] = read_part(my, path, parts[1]) end
   local texts = texts_of(my, parts[1], set_options(my, parts[1].options))
@@ -60,9 +60,9 @@ function the.run(my)
     local number, what = message:match "^parts%[(%d+)%][^:]*: (.*)$"
     my.fail(code, number and parts[tonumber(number)].path .. ": " .. what or message)
   end
-  if my.json then
-    my.event(('{"event":"joined","file":%s,"parts":%d}'):format(the.json(my.output), #parts))
+  if my.options.json then
+    my.event(('{"event":"joined","file":%s,"parts":%d}'):format(the.json(my.options.output), #parts))
   else
-    my.say(("%s: joined from %d part%s\n"):format(my.output, #parts, #parts == 1 and "" or "s"))
+    my.say(("%s: joined from %d part%s\n"):format(my.options.output, #parts, #parts == 1 and "" or "s"))
   end
 end

@@ -91,10 +91,10 @@ static void push_command(lua_State *L, const void *context)
     set_functions(L, task, common);
     set_functions(L, task, cli_files_functions);
     set_functions(L, task, task->functions);
-    glintL_set_flag(L, "json", options->json);
+    cli_push_options(L, options);
+    lua_setfield(L, -2, "options");
     glintL_set_text(L, "script", options->script);
     glintL_set_text(L, "file", options->file);
-    glintL_set_text(L, "output", options->output);
     lua_createtable(L, options->argument_count, 0);
     for (int i = 0; i < options->argument_count; i++) {
         lua_pushstring(L, options->arguments[i]);

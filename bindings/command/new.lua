@@ -25,7 +25,7 @@ function the.run(my)
     if code == 2 then code = nil end -- settings that exist already stay
   end
   if code then my.fail(code, path .. ": " .. why) end
-  if my.json then
+  if my.options.json then
     my.print('{"event":"new","file":' .. the.json(path) .. "}\n")
   else
     my.say(("%s: a scene to start from; render it with:  glint %s\n"):format(path, path))

@@ -384,4 +384,31 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "verbose", 0, NULL, ALL, read_flag, .help = "with --version: also libraries, kernels and limits", AT(verbose) },
 };
 
+// Adds the value of an option, if it was given, to the table on top of the stack.
+static void add_value(lua_State *L, const cli_options *options, const cli_option *option)
+{
+    const char *at = (const char *)options + option->at;
+    if (option->read == read_flag)
+        glintL_set_flag(L, option->name, *(const bool *)at);
+    else if (option->read == read_text || option->read == read_word)
+        glintL_set_text(L, option->name, *(const char *const *)at);
+    else if (option->read == read_render)
+        glintL_set_text(L, option->name, options->request.render_text[glintL_render_find(option->name)]);
+    else if (option->read == read_count && *(const int64_t *)at)
+        glintL_set_whole(L, option->name, *(const int64_t *)at);
+    else if (option->read == read_int && *(const int *)at)
+        glintL_set_whole(L, option->name, *(const int *)at);
+    else if (option->read == read_real && *(const double *)at > 0)
+        glintL_set_number(L, option->name, *(const double *)at);
+}
+
+void cli_push_options(lua_State *L, const cli_options *options)
+{
+    lua_newtable(L);
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        add_value(L, options, &cli_option_list[i]);
+    glintL_set_flag(L, "live", options->is_live);
+    glintL_set_text(L, "live_script", options->live_script);
+}
+
 bool cli_option_may_lack(const cli_option *option) { return option->value && option->value[0] == '['; }

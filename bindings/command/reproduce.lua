@@ -77,7 +77,7 @@ local function compare(my, text, path)
 end
 
 local function report(my, frame, verdict, error, reason)
-  if my.json then
+  if my.options.json then
     local word = verdict == 0 and "same" or verdict == SAME_PIXELS and "pixels" or "different"
     my.print(('{"event":"reproduce","file":%s,"script":%s,"frame":%s,"result":"%s"'):format(the.json(my.file),
       the.json(my.script), frame, word))

@@ -32,10 +32,14 @@ local function lines_of(text, has_axis)
 end
 
 function the.run(my)
-  if not my.output then my.fail(2, "expected -o NAME.png, .svg, .pdf or .html") end
-  if my.lacks_live_script() then my.fail(2, "expected --live=SCRIPT with the script of the pictures") end
-  local bar, names, format = my.texts()
-  local colorbar = bar and read_colorbar(my, bar)
-  my.sheet { files = the.files(my), names = lines_of(names, true), colorbar = colorbar,
-    formats = lines_of(format, format and format:find "^[^=%%]*=") }
+  local given = my.options
+  if not given.output then my.fail(2, "expected -o NAME.png, .svg, .pdf or .html") end
+  if given.live and not given.live_script then
+    my.fail(2, "expected --live=SCRIPT with the script of the pictures")
+  end
+  local colorbar = given.colorbar and read_colorbar(my, given.colorbar)
+  my.sheet { path = given.output, files = the.files(my), label = given.label, title = given.title,
+    names = lines_of(given.names, true), formats = lines_of(given.format, (given.format or ""):find "^[^=%%]*="),
+    columns = given.columns, difference = given.difference, gain = given.gain, size = given["label-size"],
+    dpi = my.number(given.dpi) or 0, transparent = given.transparent, mixes = given.force, colorbar = colorbar }
 end

@@ -194,13 +194,12 @@ static int decode(lua_State *L)
     return 1;
 }
 
-// page(): returns the template, the version, and the title if one is given.
+// page(): returns the template and the version.
 static int page(lua_State *L)
 {
     lua_pushlstring(L, PAGE, sizeof PAGE);
     lua_pushliteral(L, GLINT_VERSION);
-    lua_pushstring(L, cli_task_of(L)->options->title);
-    return 3;
+    return 2;
 }
 
 // Appends the light passes as an .exr of floats, in base64, piece by piece.

@@ -93,11 +93,11 @@ local function write_page(my, lights, files)
   local image <close>, mix = read(my, lights, files[1])
   local exposure, curve, is_plain = my.tone()
   if not is_plain then
-    my.fail(2, "-o " .. my.output .. ": the page always shows 8-bit sRGB, rounded to the nearest value; expected no "
-      .. "--bits, --transfer or --rounding")
+    my.fail(2, "-o " .. my.options.output .. ": the page always shows 8-bit sRGB, rounded to the nearest value; "
+      .. "expected no --bits, --transfer or --rounding")
   end
-  local template, version, title = my.page()
-  title = title or files[1]:match "[^/]*$"
+  local template, version = my.page()
+  local title = my.options.title or files[1]:match "[^/]*$"
   local values = {
     VERSION = version, TITLE = (title:gsub("[<&]", { ["<"] = "&lt;", ["&"] = "&amp;" })), FILE = the.json(files[1]),
     LIGHTS = list_lights(mix), STEPS = steps(my), DECODED = decoded(my), EXPOSURE = ("%.17g"):format(exposure),
@@ -132,10 +132,10 @@ local function write_pictures(my, lights, files)
 end
 
 function the.run(my)
-  local lights = read_lights(my)
+  local lights, output = read_lights(my), my.options.output
   local files = the.files(my)
-  if not my.output or my.output == "none" then my.fail(2, "expected -o with a picture, a film or a page NAME.html") end
-  if my.output:find ".%.html$" then return write_page(my, lights, files) end
+  if not output or output == "none" then my.fail(2, "expected -o with a picture, a film or a page NAME.html") end
+  if output:find ".%.html$" then return write_page(my, lights, files) end
   my.open(#files)
   write_pictures(my, lights, files)
 end
