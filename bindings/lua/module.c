@@ -92,7 +92,7 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     static void (*const parts[])(lua_State *) = {
         glintL_open_vector,    glintL_open_material, glintL_open_light,     glintL_open_camera,
         glintL_open_transform, glintL_open_shape,    glintL_open_overlay, glintL_open_scene,     glintL_open_image,     glintL_open_picture,
-        glintL_open_math,      glintL_open_variable,  glintL_open_motion,    glintL_open_params,   glintL_open_animation, glintL_open_patterns,
+        glintL_open_math,      glintL_open_variable,  glintL_open_params,   glintL_open_animation, glintL_open_patterns,
     };
     luaL_checkversion(L);
     glintL_open_run(L);
@@ -108,6 +108,8 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     glintL_set_function(L, "_output", output);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
+    glintL_set_own_function(L, "motion", "ease");
+    glintL_set_own_function(L, "motion", "keys");
     lua_createtable(L, 0, 2);
     glintL_set_function(L, "__index", refuse_member);
     glintL_set_flag(L, "__metatable", false);

@@ -24,6 +24,8 @@ void glintL_open_own(lua_State *L);
 /// Calls a function of a module, like lua_call: the arguments are on top of the stack. A module is loaded when it is
 /// first used.
 void glintL_call_own(lua_State *L, const char *module, const char *function, int arguments, int results);
+/// Sets the field `function` of the table on top to a function of the module.
+void glintL_set_own_function(lua_State *L, const char *module, const char *function);
 extern const luaL_Reg glintL_sheet_functions[], glintL_sweep_functions[]; ///< C functions for the modules
 
 // ---- carried.c ----

@@ -11,23 +11,43 @@ static const char STANDARD, OWN;
 
 // ---- Values, and messages about them ----
 
-// refuse(value, path, expected), raise(message), bad_key(key, path): raise errors at the line of the script.
+// refuse(value, path, expected), raise(message), bad_key(key, path), no_such_field(path, name, near): raise errors at the line of the script.
 static int refuse(lua_State *L) { return glintL_refuse(L, 1, luaL_checkstring(L, 2), luaL_checkstring(L, 3)); }
 
 static int raise_message(lua_State *L) { return glintL_error(L, "%s", luaL_checkstring(L, 1)); }
 
 static int bad_key(lua_State *L) { return glintL_bad_key(L, luaL_checkstring(L, 2), 1); }
 
-// check_list(table, path): returns the length of a list.
+static int no_such_field(lua_State *L)
+{
+    return glintL_no_such_field(L, luaL_checkstring(L, 1), luaL_checkstring(L, 2), lua_tostring(L, 3));
+}
+
+// check_list(table, path, allow_fields): returns the length of a list.
 static int check_list(lua_State *L)
 {
-    lua_pushinteger(L, (lua_Integer)glintL_check_list(L, 1, luaL_checkstring(L, 2), false));
+    lua_pushinteger(L, (lua_Integer)glintL_check_list(L, 1, luaL_checkstring(L, 2), lua_toboolean(L, 3)));
     return 1;
 }
 
+// read_number(path, value): returns the number as a float.
 static int read_number(lua_State *L)
 {
-    lua_pushnumber(L, glintL_read_number(L, 1, luaL_checkstring(L, 2)));
+    lua_pushnumber(L, glintL_read_number(L, 2, luaL_checkstring(L, 1)));
+    return 1;
+}
+
+static int is_vector(lua_State *L)
+{
+    lua_pushboolean(L, glintL_to_vector(L, 1) != NULL);
+    return 1;
+}
+
+// vector(x, y, z)
+static int vector(lua_State *L)
+{
+    const double v[] = { luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_checknumber(L, 3) };
+    glintL_push_vector(L, v);
     return 1;
 }
 
@@ -123,7 +143,7 @@ static void push_own(lua_State *L)
     static const luaL_Reg tools[] = {
         { "refuse", refuse },         { "raise", raise_message },       { "bad_key", bad_key }, { "check_list", check_list },
         { "read_number", read_number }, { "is_object", is_object }, { "spell_number", spell_number }, { "nearer", nearer },
-        { "note", note },             { "fail_run", fail_run },     { "is_readable", is_readable },   { NULL, NULL },
+        { "no_such_field", no_such_field }, { "is_vector", is_vector }, { "vector", vector }, { "note", note },             { "fail_run", fail_run },     { "is_readable", is_readable },   { NULL, NULL },
     };
     luaL_checkstack(L, 8, "modules");
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &OWN) == LUA_TTABLE)
@@ -151,4 +171,19 @@ void glintL_call_own(lua_State *L, const char *module, const char *function, int
     lua_pop(L, 1);
     lua_insert(L, -1 - arguments);
     lua_call(L, arguments, results);
+}
+
+// Calls the function whose module and name are the upvalues.
+static int call_own(lua_State *L)
+{
+    glintL_call_own(L, lua_tostring(L, lua_upvalueindex(1)), lua_tostring(L, lua_upvalueindex(2)), lua_gettop(L), LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+void glintL_set_own_function(lua_State *L, const char *module, const char *function)
+{
+    lua_pushstring(L, module);
+    lua_pushstring(L, function);
+    lua_pushcclosure(L, call_own, 2);
+    lua_setfield(L, -2, function);
 }

@@ -18,7 +18,7 @@ end
 
 local function number(min, max, expected, is_whole)
   return function(value, path)
-    local x = the.read_number(value, path)
+    local x = the.read_number(path, value)
     if not (x >= min and x <= max) or (is_whole and x ~= floor(x)) then the.refuse(value, path, expected) end
   end
 end

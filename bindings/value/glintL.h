@@ -367,7 +367,6 @@ void glintL_open_overlay(lua_State *L); ///< label, colorbar, axes, arrow, line,
 void glintL_open_scene(lua_State *L);
 void glintL_open_image(lua_State *L);
 void glintL_open_math(lua_State *L);
-void glintL_open_motion(lua_State *L);
 void glintL_open_params(lua_State *L);
 void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
