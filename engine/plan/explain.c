@@ -124,14 +124,11 @@ typedef bool material_test(const glint_material_desc *desc);
 static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 
 static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d) && !glint_material_is_rough(d); }
-static bool is_transparent(const glint_material_desc *d) { return glint_material_transmits(d); }
-static bool is_refracting(const glint_material_desc *d) { return is_transparent(d) && !glint_material_is_rough(d); }
+static bool is_refracting(const glint_material_desc *d) { return glint_material_transmits(d) && !glint_material_is_rough(d); }
 static bool is_rough_mirror(const glint_material_desc *d) { return glint_material_mirrors(d) && glint_material_is_rough(d); }
-static bool is_rough_glass(const glint_material_desc *d) { return is_transparent(d) && glint_material_is_rough(d); }
-static bool is_translucent(const glint_material_desc *d) { return glint_material_blends(d); }
-static bool transmits_light(const glint_material_desc *d) { return is_transparent(d) || is_translucent(d); }
-static bool is_cut_out(const glint_material_desc *d) { return glint_material_is_cut(d); }
-static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
+static bool is_rough_glass(const glint_material_desc *d) { return glint_material_transmits(d) && glint_material_is_rough(d); }
+static bool transmits_light(const glint_material_desc *d) { return glint_material_transmits(d) || glint_material_blends(d); }
+static bool is_absorbing(const glint_material_desc *d) { return glint_material_transmits(d) && any(d->absorption); }
 
 static bool shines_as(const glint_material_desc *d, glint_model model)
 {
@@ -314,7 +311,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     if (plan->environment)
         add_program(e, plan->environment->program, GLINT_FIELD_BACKGROUND, "scene");
     if (glint_plan_cuts(plan))
-        materials(e, "cut-out", is_cut_out);
+        materials(e, "cut-out", glint_material_is_cut);
     if (plan->highlights) {
         materials(e, "Phong highlight", is_phong);
         materials(e, "normalised Phong highlight", is_even_phong);
@@ -332,7 +329,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         materials(e, "mirror reflection", is_mirror);
         materials(e, "refraction", is_refracting);
         materials(e, "absorption inside", is_absorbing);
-        materials(e, "translucent surface", is_translucent);
+        materials(e, "translucent surface", glint_material_blends);
     }
     if (plan->tints)
         materials(e, "tinted shadow", transmits_light);

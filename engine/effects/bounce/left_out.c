@@ -1,4 +1,3 @@
-/// A build without mirrors and transparent materials.
 #include "engine/effects/bounce/plan.h"
 #include "engine/effects/left_out.h"
 

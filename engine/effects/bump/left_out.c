@@ -1,4 +1,3 @@
-/// A build without bumps.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(bump, "bump", "material.bump", "bumps", glint_plan_bumps(plan))

@@ -1,4 +1,3 @@
-/// A build without light that fades with the distance.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(depth_cue, "depth_cue", "scene.depth_cue", "light that fades with the distance",

@@ -1,4 +1,3 @@
-/// A build without derivatives.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(derivative, "derivative", "derivatives", "derivatives", from->desc->derivative_count > 0)

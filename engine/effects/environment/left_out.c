@@ -1,4 +1,3 @@
-/// A build without patterns as the background.
 #include "engine/effects/environment/sky.h"
 #include "engine/effects/left_out.h"
 #include "engine/effects/environment/plan.h"

@@ -1,4 +1,3 @@
-/// A build without microfacets.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(view, "microfacet", "material.model", "microfacets", plan->facets)

@@ -1,4 +1,3 @@
-/// A build without outlines.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(outline, "outline", "outline", "outlines", plan->desc.passes >> GLINT_PASS_OUTLINE & 1)

@@ -1,4 +1,3 @@
-/// A build without scan conversion.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(raster, "raster", "visibility", "scan conversion", plan->desc.visibility == GLINT_VISIBILITY_SCAN)

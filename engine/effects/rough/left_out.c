@@ -1,4 +1,3 @@
-/// A build without rays of rough surfaces.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(rough, "rough", "material.roughness", "rays of rough surfaces", plan->rough_samples > 0)

@@ -1,4 +1,3 @@
-/// A build without shutters.
 #include "engine/effects/left_out.h"
 
 #include <stdlib.h>

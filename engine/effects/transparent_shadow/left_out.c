@@ -1,4 +1,3 @@
-/// A build without light through transparent objects.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(tint, "transparent_shadow", "material", "light through transparent objects",

@@ -1,4 +1,3 @@
-/// A build without flat and Gouraud shading.
 #include "engine/effects/left_out.h"
 
 GLINT_LEFT_OUT(vertex, "vertex_shading", "mesh.shading", "flat and Gouraud shading",

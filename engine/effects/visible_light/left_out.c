@@ -1,4 +1,3 @@
-/// A build without visible lights.
 #include "engine/effects/left_out.h"
 
 static bool any_light_shows(const glint_scene *scene)
