@@ -5,7 +5,7 @@ static bool has_surfaces(const glint_plan *plan) { return plan->geometry->table.
 static bool always(const glint_plan *plan) { return plan != NULL; }
 static bool has_rays(const glint_plan *plan)
 {
-    return has_surfaces(plan) || plan->visible_light_count > 0 || plan->environment;
+    return has_surfaces(plan) || plan->own[GLINT_STAGE_VISIBLE_LIGHT] || plan->environment;
 }
 static bool casts_shadows(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->shadow_count > 0; }
 static bool accumulates(const glint_plan *plan) { return plan->accumulate; }
@@ -22,7 +22,7 @@ const glint_stage glint_stage_cast = {
     .name = "cast",
     .doc = "nearest object and distance of each ray",
     .called = has_surfaces,
-    .reads = GLINT_READS(POSITIONS) | GLINT_READS(CUT_OUTS),
+    .reads = GLINT_READS(POSITIONS) | GLINT_READS_OWN(CUT_OUT),
 };
 
 const glint_stage glint_stage_surface = {
@@ -36,7 +36,7 @@ const glint_stage glint_stage_light = {
     .name = "light",
     .doc = "direction, distance and highlight angle of each light",
     .called = glint_plan_is_lit,
-    .reads = GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(HIGHLIGHTS) | GLINT_READS(BUMPS),
+    .reads = GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(HIGHLIGHTS) | GLINT_READS_OWN(BUMP),
     .per_light = true,
 };
 
@@ -44,7 +44,7 @@ const glint_stage glint_stage_occlude = {
     .name = "occlude",
     .doc = "which points each shadow-casting light reaches",
     .called = casts_shadows,
-    .reads = GLINT_READS(SHADOWS) | GLINT_READS(TINTS),
+    .reads = GLINT_READS(SHADOWS) | GLINT_READS_OWN(TINT),
     .per_light = true,
     .walks = true,
 };

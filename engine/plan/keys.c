@@ -4,10 +4,8 @@
 /// declaration.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/effects/bounce/plan.h"
 #include "engine/effects/environment/plan.h"
 #include "engine/effects/visible_light/plan.h"
-#include "engine/plan/light_groups.h"
 #include "engine/program/program.h"
 
 #include <stdlib.h>
@@ -67,23 +65,6 @@ static glint_key highlights_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-/// Continues a key with the materials' programs for `fields` (one bit each), and with the positions of the shapes
-/// that have these materials.
-static glint_key programs_key(const glint_plan *plan, uint32_t fields, glint_key key)
-{
-    for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
-        key = glint_pattern_key(plan->patterns, i, fields, key);
-    return key;
-}
-
-static glint_key cut_outs_key(const glint_plan *plan, glint_key key)
-{
-    for (uint32_t i = 0; i < plan->material_count; i++)
-        GLINT_KEY_ADD(key, plan->patterns->of[i].cut);
-    GLINT_KEY_ADD(key, plan->geometry->look); // includes the materials of surfaces
-    return programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
-}
-
 /// Continues a key with all programs of a material, and with the ambient light, which multiplies the programs'
 /// results instead of the table's values.
 static glint_key own_programs_key(const glint_plan *plan, uint32_t i, glint_key key)
@@ -123,10 +104,6 @@ static glint_key output_key(const glint_plan *plan, uint64_t which, glint_key ke
     };
     if (which & GLINT_READS(PASSES))
         GLINT_KEY_ADD(key, plan->desc.passes);
-    if (which & GLINT_READS(PASSES))
-        key = glint_light_groups_key(plan, key);
-    if (which & GLINT_READS(PASSES) && plan->desc.outline)
-        GLINT_KEY_ADD(key, plan->desc.outline);
     if (which & GLINT_READS(TONE))
         GLINT_KEY_ADD(key, numbers);
     return key;
@@ -134,6 +111,9 @@ static glint_key output_key(const glint_plan *plan, uint64_t which, glint_key ke
 
 static glint_key background_key(const glint_plan *plan, glint_key key)
 {
+    const glint_visible_lights *lights = glint_visible_lights_of(plan);
+    for (uint32_t i = 0; i < lights->count; i++)
+        GLINT_KEY_ADD(key, lights->of[i].shown);
     GLINT_KEY_ADD(key, plan->background);
     if (plan->environment) {
         GLINT_KEY_ADD(key, plan->environment->program->structure);
@@ -152,12 +132,6 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
         GLINT_KEY_ADD(key, plan->where);
     if (which & GLINT_READS(APPEARANCE))
         GLINT_KEY_ADD(key, geometry->look);
-    if (which & GLINT_READS(PATTERNS))
-        key = programs_key(plan, GLINT_FIELDS_PLANES, key);
-    if (which & GLINT_READS(CUT_OUTS) && glint_plan_cuts(plan))
-        key = cut_outs_key(plan, key);
-    if (which & GLINT_READS(BUMPS))
-        key = programs_key(plan, 1u << GLINT_FIELD_BUMP, key);
     if (which & GLINT_READS(HIGHLIGHTS))
         key = highlights_key(plan, key);
     for (uint32_t i = 0; i < plan->light_count; i++) {
@@ -170,17 +144,13 @@ static glint_key add_inputs(const glint_plan *plan, uint64_t which, glint_key ke
     }
     for (uint32_t i = 0; i < plan->material_count && which & GLINT_READS(MATERIALS); i++)
         key = material_key(plan, i, key);
-    for (uint32_t i = 0; i < plan->material_count && which & GLINT_READS(TINTS) && plan->tints; i++)
-        key = glint_transmission_key(&plan->bouncing[i], key);
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        if (which >> (GLINT_PART_OWN + id) & 1 && plan->runs[id])
+        if (plan->runs[id] && (which >> (GLINT_PART_OWN + id) & 1 || (which & GLINT_READS(PASSES) && glint_stage_table[id]->passes)))
             key = glint_stage_table[id]->own(plan, key);
     if (which & GLINT_READS(BACKGROUND))
         key = background_key(plan, key);
     if (which & (GLINT_READS(BACKGROUND) | GLINT_READS(TONE)) && plan->desc.alpha)
         GLINT_KEY_ADD(key, plan->desc.alpha);
-    for (uint32_t i = 0; i < plan->visible_light_count && which & GLINT_READS(BACKGROUND); i++)
-        GLINT_KEY_ADD(key, plan->visible_lights[i].shown);
     return output_key(plan, which, key);
 }
 
@@ -192,15 +162,14 @@ static glint_key vertex_key(const glint_plan *plan)
     const double frame[] = { plan->desc.precision, seen ? 1 + c->orthographic : 0 };
     glint_key key = { 0 };
     GLINT_KEY_ADD(key, frame);
-    key = glint_light_groups_key(plan, key);
     if (seen)
         key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
     return add_inputs(plan,
-                      GLINT_READS(POSITIONS) | GLINT_READS(APPEARANCE) | GLINT_READS(CUT_OUTS) |
+                      GLINT_READS(POSITIONS) | GLINT_READS(APPEARANCE) | GLINT_READS_OWN(CUT_OUT) |
                           GLINT_READS(HIGHLIGHTS) | GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) |
-                          GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS) | GLINT_READS(TINTS) |
-                          GLINT_READS_OWN(DERIVATIVE),
+                          GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS) | GLINT_READS_OWN(TINT) |
+                          GLINT_READS_OWN(DERIVATIVE) | GLINT_READS_OWN(LIGHT_GROUPS),
                       key);
 }
 
@@ -227,7 +196,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         plan->matte_keys[i] = matte_key(plan, i, none);
     }
     plan->all_materials_key = add_inputs(
-        plan, GLINT_READS(MATERIALS) | GLINT_READS(TINTS) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE) |
+        plan, GLINT_READS(MATERIALS) | GLINT_READS_OWN(TINT) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE) |
                   GLINT_READS_OWN(ROUGH),
         none);
     plan->all_lights_key =

@@ -1,4 +1,4 @@
-#include "engine/plan/light_groups.h"
+#include "engine/plan/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -87,7 +87,7 @@ static bool is_local(const glint_plan *plan)
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         if (plan->runs[id] && glint_stage_table[id]->remote)
             return false;
-    return !plan->light_groups && !plan->tints && plan->light_count <= GLINT_LIGHT_CHUNK;
+    return plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
 /// Returns whether all samples of a tile can be shaded together: the data of all samples fit into the tile's memory.
@@ -120,10 +120,11 @@ static void choose_stages(glint_plan *plan)
 {
     plan->tints = glint_plan_is_lit(plan) && (plan->transmits || plan->clears) && plan->shadow_count > 0;
     plan->dims = plan->tints && plan->absorbs;
-    plan->accumulate = plan->light_groups || plan->desc.samples > 1 || plan->tints || plan->light_count > GLINT_LIGHT_CHUNK;
+    plan->accumulate = plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        plan->accumulate = plan->accumulate || (glint_stage_table[id]->sums && glint_stage_table[id]->called(plan));
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         plan->runs[id] = glint_stage_table[id]->called(plan);
-        plan->accumulate = plan->accumulate || (plan->runs[id] && glint_stage_table[id]->sums);
         plan->walks = plan->walks || (plan->runs[id] && glint_stage_table[id]->walks);
     }
     plan->needs_index = plan->walks || !plan->runs[GLINT_STAGE_RASTER] || glint_plan_cuts(plan);
@@ -262,7 +263,6 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->materials);
     free(plan->bouncing);
     glint_plan_patterns_free(plan->patterns);
-    glint_light_groups_free(plan->light_groups);
     free(plan->material_keys);
     free(plan->matte_keys);
     free(plan->lines);
@@ -366,18 +366,13 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
     glint_key key = glint_key_add(glint_plan_picture_key(plan, GLINT_STAGE_REFINE), options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
-    if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
-        key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->overlays)
         key = glint_overlays_key(plan->overlays, key);
-    const bool outlined = desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline;
-    if ((outlined || (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1)) && glint_plan_casts_centres(plan))
+    if (pass < GLINT_PASS_COUNT && GLINT_CENTRE_PASSES >> pass & 1 && glint_plan_casts_centres(plan))
         key = glint_key_add_string(key, "centres"); // earlier versions computed these passes from the first sample
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         if (plan->runs[id] && glint_stage_table[id]->pass_key)
             key = glint_stage_table[id]->pass_key(plan, (int)desc->pass, key);
-    if (desc->pass >= GLINT_PASS_LIGHT)
-        key = glint_light_pass_key(plan, (uint32_t)desc->pass - GLINT_PASS_LIGHT, key);
     const bool scaled = desc->pass == GLINT_PASS_DEPTH || (desc->pass >= GLINT_PASS_DERIVATIVE && desc->pass < GLINT_PASS_LIGHT);
     if (desc->colormap && scaled)
         key = glint_key_add(key, &desc->colormap, sizeof desc->colormap);

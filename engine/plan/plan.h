@@ -50,7 +50,7 @@ typedef struct glint_plan_light {
     bool is_spot;
     glint_spot spot;
     uint32_t source; ///< index of the described light in the scene
-    uint32_t group; ///< its group among the frame's light passes; GLINT_NO_GROUP: none
+    uint32_t group; ///< in frames with light passes: its group, see effects/light_groups/plan.h
     /// area light: its sample sets, one after another; otherwise NULL
     const glint_light_sample *light_samples;
     const glint_light_sample *cap; ///< if its shadows are computed with caps: describes the whole light; otherwise NULL
@@ -113,10 +113,6 @@ struct glint_plan {
         uint32_t material; ///< the innermost medium
         double absorption[3];
     } veil; ///< the medium that contains the eye; `on`: it absorbs light
-    struct glint_plan_visible_light *visible_lights; ///< the surfaces of the visible lights
-    struct glint_plan_edge *visible_light_edges; ///< edges of all visible lights
-    uint32_t visible_light_count;
-    size_t visible_light_edge_count;
 
     glint_plan_derivatives *derivatives; ///< NULL: none is requested
     struct glint_light_groups *light_groups; ///< NULL: no light pass is requested

@@ -2,7 +2,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/area_light.h"
-#include "engine/plan/light_groups.h"
+#include "engine/plan/plan.h"
 #include "engine/stages/simd/coefficients.h"
 
 #include <float.h>
@@ -328,9 +328,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
     size_t light_samples = 0;
     plan->caps = allows_caps(plan);
     total_ambient(plan, scene);
-    glint_status status = glint_plan_find_light_groups(plan, scene, error);
-    if (!status)
-        status = make_materials(plan, &powers, &facets, error);
+    glint_status status = make_materials(plan, &powers, &facets, error);
     if (!status)
         status = ensure_capacity(plan, scene, error);
     if (status)
@@ -342,7 +340,6 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
         if (is_black(light.diffuse) && is_black(light.specular) && !plan->desc.derivative_count)
             continue; // lights of strength 0 can have derivatives, too
         light.source = (uint32_t)i;
-        light.group = glint_light_group_of(plan, i);
         glossy_light = glossy_light || !is_black(light.specular);
         light_samples += add_light(plan, &light, desc, plan->light_samples + light_samples);
     }

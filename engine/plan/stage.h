@@ -23,20 +23,16 @@ typedef enum glint_scene_part {
     GLINT_PART_VIEW, ///< camera, size of the picture, samples
     GLINT_PART_POSITIONS, ///< positions of the surfaces
     GLINT_PART_APPEARANCE, ///< material and two-sidedness of each surface
-    GLINT_PART_PATTERNS, ///< programs of materials, and the coordinate spaces of the shapes
-    GLINT_PART_CUT_OUTS, ///< programs of holes, and materials that are invisible
-    GLINT_PART_BUMPS, ///< programs that turn normals
     GLINT_PART_HIGHLIGHTS, ///< kind of highlight of each material
     GLINT_PART_LIGHT_POSITIONS, ///< kind, position and fall-off of each light
     GLINT_PART_SHADOWS, ///< lights that cast shadows
     GLINT_PART_LIGHT_COLORS,
     GLINT_PART_MATERIALS, ///< reflectances and exponents of materials
     GLINT_PART_BACKGROUND, ///< background: a colour or a program; brightness of visible lights
-    GLINT_PART_TINTS, ///< transmission of materials, if transmission tints shadows
     GLINT_PART_PASSES,
     GLINT_PART_TONE,
-    GLINT_PART_OWN ///< the first part by stage: GLINT_PART_OWN + a glint_stage_id is the data that only this stage
-        ///< reads, if it runs
+    GLINT_PART_OWN ///< the first part by stage: GLINT_PART_OWN + a glint_stage_id is the data that this stage declares,
+        ///< if it runs
 } glint_scene_part;
 
 #define GLINT_READS(input) (UINT64_C(1) << GLINT_PART_##input)
@@ -94,8 +90,8 @@ typedef struct glint_stage {
     uint64_t reads; ///< inputs of the stage, a set made by GLINT_READS and GLINT_READS_OWN; the results of the stages
         ///< before it are implied
     glint_key (*own)(const struct glint_plan *plan,
-                     glint_key key); ///< continues a key with data that only this stage reads; NULL: none. Not NULL if
-        ///< `reads` has GLINT_READS_OWN of the stage, or with `scales`
+                     glint_key key); ///< continues a key with data that this stage adds to the scene's parts; NULL: none.
+        ///< Not NULL if some stage's `reads` has GLINT_READS_OWN of the stage, or with `scales` or `passes`
     glint_key (*pass_key)(const struct glint_plan *plan, int pass,
                           glint_key key); ///< continues a key with what only this pass depends on; NULL: nothing
     /// Renders frames of a plan with several times in place of glint_render_instant. NULL: the stage renders no whole
@@ -109,6 +105,7 @@ typedef struct glint_stage {
                    const struct glint_extent *extent); ///< changes the picture after its tiles. NULL: nothing
     /// Frees renderer->own[id]: for a frame that does not need it, and in the end. NULL: there is nothing
     void (*end)(glint_renderer *renderer);
+    bool passes; ///< whether `own` says what passes contain: then keys with GLINT_READS(PASSES) have it, too
     bool aside; ///< the stages after it read its inputs instead of its result, or neither
     bool per_light; ///< whether the stage runs once for each light
     bool walks; ///< whether the stage traverses the BVH

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define PI 0x1.921fb54442d18p+1
 
@@ -259,4 +260,18 @@ void glint_describe_light(const glint_light_desc *desc, size_t number, char *out
         snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
     else
         snprintf(out, size, "%s #%zu", kinds[desc->kind], number);
+}
+
+void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE])
+{
+    if (!scene || !name)
+        return;
+    const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
+    char plain[GLINT_NAME_SIZE];
+    if (desc->group[0] || desc->name[0]) {
+        snprintf(name, GLINT_NAME_SIZE, "%s", desc->group[0] ? desc->group : desc->name);
+        return;
+    }
+    glint_describe_light(desc, index + 1, plain, sizeof plain); // "point_light #2"
+    snprintf(name, GLINT_NAME_SIZE, "%.*s_%zu", (int)strcspn(plain, " "), plain, index + 1);
 }

@@ -93,7 +93,7 @@ static inline bool glint_batch_uncovers(const glint_batch *batch, const glint_pl
 {
     const uint32_t i = batch->sample[ray];
     const bool seen = glint_batch_has_sample(batch, ray) &&
-                      (glint_has_lane(batch->tile.at.hits, i) || (plan->visible_light_count && glint_tile_sees_light(&batch->tile, i)));
+                      (glint_has_lane(batch->tile.at.hits, i) || glint_tile_sees_light(&batch->tile, plan, i));
     return batch->rays->sight[ray] && !seen;
 }
 /// Returns whether any visible material passes a test. The materials must be known.

@@ -66,15 +66,10 @@ static float *geometry_of(const glint_tile *tile, const glint_tile_frame *frame,
     return frame->plan->is_base ? glint_differ_values(tile->differ, value) : own;
 }
 
-static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
-{
-    return plan->visible_light_count && glint_tile_sees_light(tile, i);
-}
-
 double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
     double d[3];
-    if (!glint_has_lane(tile->at.hits, i) && !sees_light(tile, plan, i))
+    if (!glint_has_lane(tile->at.hits, i) && !glint_tile_sees_light(tile, plan, i))
         return HUGE_VAL;
     for (int c = 0; c < 3; c++)
         d[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
@@ -95,7 +90,7 @@ static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, 
     for (unsigned bits = 0xffffu & ~(unsigned)tile->at.hits[g]; bits; bits &= bits - 1) {
         const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
         double n[3] = { 0 };
-        if (sees_light(tile, frame->plan, i))
+        if (glint_tile_sees_light(tile, frame->plan, i))
             glint_stage_table[GLINT_STAGE_VISIBLE_LIGHT]->normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++)
             normal[c][i] = (float)n[c];
@@ -120,7 +115,7 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
     for (int c = 0; c < 3; c++)
         normal[c] = geometry_of(tile, frame, GLINT_DIFFER_NORMAL + c, own[c]);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        if (!tile->at.hits[g] && !frame->plan->visible_light_count) {
+        if (!(tile->at.hits[g] | glint_tile_sees_lights(tile, frame->plan, g))) {
             for (int c = 0; c < 3; c++)
                 memset(normal[c] + g * GLINT_GROUP, 0, GLINT_GROUP * sizeof *normal[c]);
             continue;
@@ -218,7 +213,7 @@ bool glint_tile_wants_coverage(const glint_plan *plan)
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k)
 {
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const bool light = plan->visible_light_count && glint_tile_sees_light(tile, i);
+        const bool light = glint_tile_sees_light(tile, plan, i);
         tile->film.covered[i] =
             (k ? tile->film.covered[i] : 0) + (light || tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
     }

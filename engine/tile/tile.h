@@ -369,11 +369,16 @@ static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_f
 }
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
-/// Returns whether ray i sees a light.
-static inline bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
+/// Returns the lanes of a group whose rays see a light.
+static inline uint16_t glint_tile_sees_lights(const glint_tile *tile, const glint_plan *plan, uint32_t group)
 {
     const uint16_t *seen = tile->own[GLINT_STAGE_VISIBLE_LIGHT]; // starts with lanes that see a light
-    return seen && seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    return plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && seen ? seen[group] : 0;
+}
+/// Returns whether ray i sees a light.
+static inline bool glint_tile_sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    return glint_tile_sees_lights(tile, plan, i / GLINT_GROUP) >> i % GLINT_GROUP & 1;
 }
 
 /// effects/environment/environment.c: a background computed by a program.

@@ -67,7 +67,7 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
 /// Returns whether no ray has hit anything.
 static bool shows_nothing(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    return frame->plan->visible_light_count == 0 && !glint_has_lanes(tile->at.hits, tile->group_count);
+    return !frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && !glint_has_lanes(tile->at.hits, tile->group_count);
 }
 
 /// The values of a tile, in the order of groups.

@@ -123,8 +123,9 @@ static double surface_light(const glint_plan *plan, uint32_t i)
 static double brightest_surface(const glint_plan *plan)
 {
     double most = plan->environment ? plan->environment->most : brightest_of(plan->background);
-    for (uint32_t i = 0; i < plan->visible_light_count; i++)
-        most = fmax(most, brightest_of(plan->visible_lights[i].shown));
+    const glint_visible_lights *lights = glint_visible_lights_of(plan);
+    for (uint32_t i = 0; i < lights->count; i++)
+        most = fmax(most, brightest_of(lights->of[i].shown));
     for (uint32_t i = 0; i < plan->material_count; i++)
         most = fmax(most, surface_light(plan, i));
     return most;

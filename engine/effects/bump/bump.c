@@ -192,9 +192,15 @@ bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t 
     return vec_dot(n, direction) > 0;
 }
 
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    return glint_programs_key(plan, 1u << GLINT_FIELD_BUMP, key);
+}
+
 /// Runs as a part of the stages surface and light.
 const glint_stage glint_stage_bump = {
     .called = glint_plan_bumps,
+    .own = own_key,
     .step[GLINT_AT_SURFACE] = turn_normals,
     .limit = cut_horizon,
 };

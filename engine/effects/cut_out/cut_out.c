@@ -446,9 +446,18 @@ static void open_holes(glint_tile *tile, const glint_tile_frame *frame, const gl
             return;
 }
 
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        GLINT_KEY_ADD(key, plan->patterns->of[i].cut);
+    GLINT_KEY_ADD(key, plan->geometry->look); // includes the materials of surfaces
+    return glint_programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
+}
+
 /// Runs as a part of the stages cast and occlude.
 const glint_stage glint_stage_cut_out = {
     .called = glint_plan_cuts,
+    .own = own_key,
     .step[GLINT_AT_CAST] = see_through,
     .admit = open_holes,
     .create = create,

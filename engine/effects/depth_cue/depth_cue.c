@@ -96,7 +96,7 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 static glint_status prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
     const glint_scene_desc *scene = &from->scene->desc;
-    if (!scene->has_depth_cue || (plan->geometry->table.prim_count == 0 && plan->visible_light_count == 0))
+    if (!scene->has_depth_cue || (plan->geometry->table.prim_count == 0 && !plan->own[GLINT_STAGE_VISIBLE_LIGHT]))
         return GLINT_OK;
     glint_plan_depth_cue *cue = malloc(sizeof *cue);
     if (!cue)

@@ -96,10 +96,10 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
         return "absorption: light through an absorbing material has no derivative by absorption or movement; set "
                "shadows = false for the lights";
     const bool thins = plan->veil.on && glint_any_slope(d->bounces[plan->veil.material].absorption);
-    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && plan->visible_light_count && (d->bends || d->fades || thins))
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && (d->bends || d->fades || thins))
         return "scene.depth_cue, absorption: movement and fading have no derivative where visible lights may be "
                "seen; set visible = false for the lights";
-    if (plan->absorbs && plan->visible_light_count && d->bends)
+    if (plan->absorbs && plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && d->bends)
         return "absorption: movement has no derivative where visible lights may be seen through an absorbing "
                "material; set visible = false for the lights";
     return NULL;

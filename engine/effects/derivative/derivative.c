@@ -371,10 +371,8 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
 {
     glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan_derivatives *all = frame->plan->derivatives;
-    unsigned sky = tile->transparent ? 0 : tile->active[g] & ~(unsigned)tile->at.hits[g];
-    for (unsigned bits = frame->plan->visible_light_count ? sky : 0; bits; bits &= bits - 1)
-        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)))
-            sky &= ~(bits & -bits);
+    const unsigned covered = tile->at.hits[g] | glint_tile_sees_lights(tile, frame->plan, g);
+    const unsigned sky = tile->transparent ? 0 : tile->active[g] & ~covered;
     for (size_t k = 0; k < all->count; k++)
         for (int c = 0; c < 3; c++) {
             add_ambient(tile, frame->plan, k, g, tile->at.hits[g], c);

@@ -45,11 +45,7 @@ void glint_environment_destroy(void *memory)
 /// Returns the lanes of a group whose rays leave the scene.
 static uint16_t leaving(const glint_tile *tile, const glint_plan *plan, uint32_t g)
 {
-    uint16_t lanes = (uint16_t)(tile->active[g] & ~tile->at.hits[g]);
-    for (unsigned bits = plan->runs[GLINT_STAGE_VISIBLE_LIGHT] ? lanes : 0; bits; bits &= bits - 1)
-        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits)))
-            lanes &= (uint16_t) ~(bits & -bits);
-    return lanes;
+    return (uint16_t)(tile->active[g] & ~(tile->at.hits[g] | glint_tile_sees_lights(tile, plan, g)));
 }
 
 bool glint_tile_sees_environment(const glint_tile *tile)

@@ -530,7 +530,6 @@ static void gather(glint_tile *tile, const glint_tile_frame *frame, const glint_
     glint_batch *batch = &indirect->batch;
     glint_indirect_begin(indirect, frame);
     glint_plan_drop(&indirect->plan, GLINT_STAGE_VISIBLE_LIGHT);
-    indirect->plan.visible_light_count = 0;
     if (frame->plan->indirect.is_sky) { // the sky counts as open whatever the background is
         indirect->plan.environment = NULL;
         glint_plan_drop(&indirect->plan, GLINT_STAGE_ENVIRONMENT);

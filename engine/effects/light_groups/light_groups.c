@@ -325,7 +325,14 @@ static bool called(const glint_plan *plan) { return plan->light_groups; }
 
 /// Runs as a part of all stages that add light.
 const glint_stage glint_stage_light_groups = {
+    .prepare = glint_light_groups_prepare,
+    .release = glint_light_groups_release,
     .called = called,
+    .own = glint_light_groups_key,
+    .pass_key = glint_light_pass_key,
+    .passes = true,
+    .sums = true,
+    .remote = true,
     .step = { [GLINT_AT_DONE] = resolve, [GLINT_AT_STORE] = take_base, [GLINT_AT_STORE_LIGHT] = store },
     .before_shade = begin,
     .after_shade = shade,

@@ -7,7 +7,7 @@
 #ifndef GLINT_LIGHT_GROUPS_H
 #define GLINT_LIGHT_GROUPS_H
 
-#include "engine/plan/light_groups.h"
+#include "engine/effects/light_groups/plan.h"
 #include "engine/tile/batch.h"
 
 #define GLINT_GROUP_SUMS 3 ///< diffuse, specular and other light

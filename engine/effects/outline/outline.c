@@ -100,10 +100,28 @@ static void finish(glint_renderer *renderer, const glint_tile_frame *frame, cons
 
 static bool called(const glint_plan *plan) { return plan->desc.passes >> GLINT_PASS_OUTLINE & 1; }
 
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    GLINT_KEY_ADD(key, plan->desc.outline);
+    return key;
+}
+
+/// Lines drawn over beauty are those of the pixels' centres.
+static glint_key pass_key(const glint_plan *plan, int pass, glint_key key)
+{
+    if (pass != GLINT_PASS_BEAUTY || !plan->desc.outline)
+        return key;
+    key = own_key(plan, key);
+    return glint_plan_casts_centres(plan) ? glint_key_add_string(key, "centres") : key;
+}
+
 /// Runs on the whole picture after its tiles.
 const glint_stage glint_stage_outline = {
     .name = "outline",
     .doc = "lines where depth, normal or object changes",
     .called = called,
+    .own = own_key,
+    .pass_key = pass_key,
+    .passes = true,
     .finish = finish,
 };

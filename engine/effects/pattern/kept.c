@@ -279,11 +279,14 @@ static bool gives_numbers(const glint_plan *plan)
     return plan->geometry->table.prim_count > 0 && plan->patterns && (plan->patterns->any || plan->patterns->bumps);
 }
 
+static glint_key own_key(const glint_plan *plan, glint_key key) { return glint_programs_key(plan, GLINT_FIELDS_PLANES, key); }
+
 const glint_stage glint_stage_pattern = {
     .name = "pattern",
     .doc = "programs of materials at each visible point",
     .called = gives_numbers,
-    .reads = GLINT_READS(PATTERNS),
+    .own = own_key,
+    .reads = GLINT_READS_OWN(PATTERN),
     .step[GLINT_AT_SIGN] = sign,
     .aside = true, // stages that read its results also read the materials with their programs
 };

@@ -388,6 +388,13 @@ glint_key glint_pattern_key(const glint_plan_patterns *patterns, uint32_t materi
     return key;
 }
 
+glint_key glint_programs_key(const glint_plan *plan, uint32_t fields, glint_key key)
+{
+    for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
+        key = glint_pattern_key(plan->patterns, i, fields, key);
+    return key;
+}
+
 bool glint_patterns_see(const glint_plan_patterns *patterns)
 {
     const uint32_t eye = 1u << GLINT_INPUT_V_X | 1u << GLINT_INPUT_V_Y | 1u << GLINT_INPUT_V_Z;

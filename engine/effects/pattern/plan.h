@@ -95,6 +95,8 @@ glint_status glint_plan_find_patterns(struct glint_plan *plan, bool indirect, gl
 void glint_plan_patterns_free(glint_plan_patterns *patterns); ///< NULL: nothing
 /// Continues a key with a material's programs for `fields` (one bit each).
 glint_key glint_pattern_key(const glint_plan_patterns *patterns, uint32_t material, uint32_t fields, glint_key key);
+/// The same for all materials of a plan.
+glint_key glint_programs_key(const struct glint_plan *plan, uint32_t fields, glint_key key);
 /// Returns whether any program reads the eye's position. `patterns` may be NULL.
 bool glint_patterns_see(const glint_plan_patterns *patterns);
 

@@ -7,7 +7,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/effects/shutter/plan.h"
-#include "engine/plan/light_groups.h"
+#include "engine/effects/light_groups/plan.h"
 
 #include <stdlib.h>
 #include <string.h>

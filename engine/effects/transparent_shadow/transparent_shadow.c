@@ -609,6 +609,13 @@ static void transparent_shadows(glint_tile *tile, const glint_tile_frame *frame,
 
 static bool called(const glint_plan *plan) { return plan->tints; }
 
+static glint_key own_key(const glint_plan *plan, glint_key key)
+{
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        key = glint_transmission_key(&plan->bouncing[i], key);
+    return key;
+}
+
 static glint_status begin_frame(glint_renderer *renderer, glint_tile_frame *frame, glint_error *error)
 {
     glint_tints *tints = renderer->own[GLINT_STAGE_TINT];
@@ -654,9 +661,12 @@ static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any
 /// Runs as a part of the stages occlude and shade.
 const glint_stage glint_stage_tint = {
     .called = called,
+    .own = own_key,
     .begin = begin_frame,
     .end = end,
+    .sums = true,
     .normals = true,
+    .remote = true,
     .step[GLINT_AT_SHADED] = add,
     .before_shade = mask_dim,
     .adds = adds,

@@ -2,7 +2,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/frame/renderer.h"
-#include "engine/plan/light_groups.h"
+#include "engine/effects/light_groups/plan.h"
 
 #include <stdlib.h>
 

@@ -18,10 +18,22 @@ typedef struct glint_plan_visible_light {
     const glint_plan_edge *edges; ///< polygon
     size_t edge_count; ///< 0: a disk
     double shown[3]; ///< brightness: pi times its radiance, like all light in the film
-    uint32_t group; ///< group of the light, as in glint_plan_light
+    uint32_t source, group; ///< as in glint_plan_light
 } glint_plan_visible_light;
 
+/// The visible lights of a frame.
+typedef struct glint_visible_lights {
+    uint32_t count;
+    glint_plan_visible_light of[];
+} glint_visible_lights;
+
+static inline const glint_visible_lights *glint_visible_lights_of(const glint_plan *plan)
+{
+    static const glint_visible_lights none = { 0 };
+    return plan->own[GLINT_STAGE_VISIBLE_LIGHT] ? plan->own[GLINT_STAGE_VISIBLE_LIGHT] : &none;
+}
+
+
 glint_status glint_visible_lights_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
-void glint_visible_lights_release(glint_plan *plan);
 
 #endif

@@ -41,7 +41,7 @@ static void destroy(void *memory)
 static bool fit(void *memory, const glint_plan *plan)
 {
     struct glint_visible_light *visible_light = memory;
-    uint32_t *near = realloc(visible_light->near, plan->visible_light_count * sizeof *near);
+    uint32_t *near = realloc(visible_light->near, glint_visible_lights_of(plan)->count * sizeof *near);
     if (near)
         visible_light->near = near;
     return near;
@@ -127,10 +127,11 @@ static bool is_inside(const glint_plan_visible_light *visible_light, const visib
 static uint32_t see(const struct glint_visible_light *visible_light, const glint_plan *plan,
                     const visible_light_ray *ray, double *t)
 {
+    const glint_visible_lights *lights = glint_visible_lights_of(plan);
     const double surface = *t;
     uint32_t best = GLINT_MISS;
     for (uint32_t i = 0; i < visible_light->near_count; i++) {
-        const glint_plan_visible_light *light = &plan->visible_lights[visible_light->near[i]];
+        const glint_plan_visible_light *light = &lights->of[visible_light->near[i]];
         const double at = light->ball ? intersect_ball(light, ray) : intersect_flat(light, ray);
         const double bound = best == GLINT_MISS && at >= surface && is_inside(light, ray, surface) ? HUGE_VAL : *t;
         if (!(at > 0 && at < bound))
@@ -167,9 +168,10 @@ static void find_near(struct glint_visible_light *visible_light, const glint_til
                            (camera->height - 2 * py) * camera->up[c];
             middle[c] += corner[k][c];
         }
+    const glint_visible_lights *lights = glint_visible_lights_of(plan);
     visible_light->near_count = 0;
-    for (uint32_t i = 0; i < plan->visible_light_count; i++) {
-        const glint_plan_visible_light *light = &plan->visible_lights[i];
+    for (uint32_t i = 0; i < lights->count; i++) {
+        const glint_plan_visible_light *light = &lights->of[i];
         double away[3];
         bool outside = false;
         vec_sub(away, light->center, camera->eye);
@@ -186,7 +188,7 @@ static bool in_sight(glint_tile *tile, const glint_tile_frame *frame)
     struct glint_visible_light *visible_light = own_of(tile);
     memset(visible_light->seen, 0, sizeof visible_light->seen);
     if (!glint_tile_rays_of(tile)) {
-        visible_light->near_count = frame->plan->visible_light_count;
+        visible_light->near_count = glint_visible_lights_of(frame->plan)->count;
         for (uint32_t i = 0; i < visible_light->near_count; i++)
             visible_light->near[i] = i;
     } else {
@@ -247,7 +249,7 @@ static void see_lights(glint_tile *tile, const glint_tile_frame *frame, const ui
 static void normal_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3])
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
+    const glint_plan_visible_light *light = &glint_visible_lights_of(frame->plan)->of[own_of(tile)->which[i]];
     double d[3];
     for (int c = 0; c < 3; c++) {
         const double from =
@@ -280,7 +282,7 @@ static void add_brightness(glint_tile *tile, const glint_tile_frame *frame, cons
     for (uint32_t g = 0; g < tile->group_count && args->first; g++)
         for (unsigned bits = own_of(tile)->seen[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            const glint_plan_visible_light *light = &frame->plan->visible_lights[own_of(tile)->which[i]];
+            const glint_plan_visible_light *light = &glint_visible_lights_of(frame->plan)->of[own_of(tile)->which[i]];
             for (int c = 0; c < 3; c++)
                 tile->film.sum[GLINT_TERM_BACKGROUND][c][i] += light->shown[c];
             glint_groups_add(tile, light->group, i, light->shown);
@@ -300,12 +302,13 @@ static glint_key position_key(const glint_plan_visible_light *visible_light, gli
 /// Hashes the positions of visible lights. The key of the background includes their brightness.
 static glint_key positions_key(const glint_plan *plan, glint_key key)
 {
-    for (uint32_t i = 0; i < plan->visible_light_count; i++)
-        key = position_key(&plan->visible_lights[i], key);
+    const glint_visible_lights *lights = glint_visible_lights_of(plan);
+    for (uint32_t i = 0; i < lights->count; i++)
+        key = position_key(&lights->of[i], key);
     return key;
 }
 
-static bool called(const glint_plan *plan) { return plan->visible_light_count > 0; }
+static bool called(const glint_plan *plan) { return plan->own[GLINT_STAGE_VISIBLE_LIGHT]; }
 
 static void look(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
@@ -323,7 +326,6 @@ const glint_stage glint_stage_visible_light = {
     .name = "visible_lights",
     .doc = "which rays see a light before any object",
     .prepare = glint_visible_lights_prepare,
-    .release = glint_visible_lights_release,
     .called = called,
     .own = positions_key,
     .reads = GLINT_READS_OWN(VISIBLE_LIGHT),

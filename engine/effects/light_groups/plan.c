@@ -1,5 +1,5 @@
 /// Light passes: the groups of lights, and those that a frame needs.
-#include "engine/plan/light_groups.h"
+#include "engine/effects/light_groups/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/effects/visible_light/plan.h"
@@ -9,20 +9,6 @@
 #include <string.h>
 
 typedef struct glint_light_groups groups;
-
-void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE])
-{
-    if (!scene || !name)
-        return;
-    const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
-    char plain[GLINT_NAME_SIZE];
-    if (desc->group[0] || desc->name[0]) {
-        snprintf(name, GLINT_NAME_SIZE, "%s", desc->group[0] ? desc->group : desc->name);
-        return;
-    }
-    glint_describe_light(desc, index + 1, plain, sizeof plain); // "point_light #2"
-    snprintf(name, GLINT_NAME_SIZE, "%.*s_%zu", (int)strcspn(plain, " "), plain, index + 1);
-}
 
 // ---- Names ----
 
@@ -129,6 +115,17 @@ static size_t entries_of(const char *list)
     return count;
 }
 
+static void destroy(groups *g)
+{
+    if (!g)
+        return;
+    free(g->name);
+    free(g->list);
+    free(g->of_light);
+    free(g->ambient);
+    free(g);
+}
+
 static groups *make(size_t passes, size_t lights)
 {
     groups *g = glint_alloc(1, sizeof *g);
@@ -141,20 +138,11 @@ static groups *make(size_t passes, size_t lights)
     g->ambient = glint_alloc(passes + 1, sizeof *g->ambient);
     if (g->name && g->list && g->of_light && g->ambient)
         return g;
-    glint_light_groups_free(g);
+    destroy(g);
     return NULL;
 }
 
-void glint_light_groups_free(groups *g)
-{
-    if (!g)
-        return;
-    free(g->name);
-    free(g->list);
-    free(g->of_light);
-    free(g->ambient);
-    free(g);
-}
+void glint_light_groups_release(glint_plan *plan) { destroy(plan->light_groups); }
 
 static void join_names(groups *g)
 {
@@ -174,12 +162,10 @@ static void share_ambient(groups *g, const glint_plan *plan, const glint_light_d
         }
 }
 
-glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *scene, glint_error *error)
+/// Finds the groups of the scene's lights. Fails if no light of the scene has a group of the list.
+static glint_status find_groups(glint_plan *plan, const glint_scene *scene, const char *list, glint_error *error)
 {
     char own[GLINT_NAME_SIZE];
-    const char *list = plan->desc.light_passes;
-    if (!list)
-        return GLINT_OK;
     groups *g = make(entries_of(list) + scene->lights.count + 1, scene->lights.count);
     if (!g)
         return glint_fail_nomem(error);
@@ -209,9 +195,20 @@ glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *s
     return GLINT_OK;
 }
 
-uint32_t glint_light_group_of(const glint_plan *plan, size_t light)
+glint_status glint_light_groups_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
-    return plan->light_groups ? plan->light_groups->of_light[light] : GLINT_NO_GROUP;
+    if (!plan->desc.light_passes)
+        return GLINT_OK;
+    const glint_status status = find_groups(plan, from->scene, plan->desc.light_passes, error);
+    if (status)
+        return status;
+    const uint32_t *of_light = plan->light_groups->of_light;
+    for (uint32_t i = 0; i < plan->light_count && !from->times; i++) // lights of a shutter's times have their groups
+        plan->lights[i].group = of_light[plan->lights[i].source];
+    glint_visible_lights *visible = plan->own[GLINT_STAGE_VISIBLE_LIGHT];
+    for (uint32_t i = 0; visible && i < visible->count; i++)
+        visible->of[i].group = of_light[visible->of[i].source];
+    return GLINT_OK;
 }
 
 // ---- Keys ----
@@ -219,20 +216,20 @@ uint32_t glint_light_group_of(const glint_plan *plan, size_t light)
 glint_key glint_light_groups_key(const glint_plan *plan, glint_key key)
 {
     const groups *g = plan->light_groups;
-    if (!g)
-        return key;
     key = glint_key_add_string(key, g->list);
     for (uint32_t i = 0; i < plan->light_count; i++)
         key = glint_key_add(key, &plan->lights[i].group, sizeof plan->lights[i].group);
-    for (uint32_t i = 0; i < plan->visible_light_count; i++)
-        key = glint_key_add(key, &plan->visible_lights[i].group, sizeof plan->visible_lights[i].group);
+    const glint_visible_lights *visible = glint_visible_lights_of(plan);
+    for (uint32_t i = 0; i < visible->count; i++)
+        key = glint_key_add(key, &visible->of[i].group, sizeof visible->of[i].group);
     return glint_key_add(key, g->ambient, g->count * sizeof *g->ambient);
 }
 
-glint_key glint_light_pass_key(const glint_plan *plan, uint32_t pass, glint_key key)
+glint_key glint_light_pass_key(const glint_plan *plan, int number, glint_key key)
 {
     const groups *g = plan->light_groups;
-    if (!g || pass >= g->pass_count)
+    const uint32_t pass = (uint32_t)(number - GLINT_PASS_LIGHT);
+    if (number < GLINT_PASS_LIGHT || pass >= g->pass_count)
         return key;
     const bool rest = pass == g->rest;
     key = glint_key_add(key, &rest, sizeof rest);
@@ -240,8 +237,9 @@ glint_key glint_light_pass_key(const glint_plan *plan, uint32_t pass, glint_key 
         const bool own = plan->lights[i].group == pass;
         key = glint_key_add(key, &own, sizeof own);
     }
-    for (uint32_t i = 0; i < plan->visible_light_count && !rest; i++) {
-        const bool own = plan->visible_lights[i].group == pass;
+    const glint_visible_lights *visible = glint_visible_lights_of(plan);
+    for (uint32_t i = 0; i < visible->count && !rest; i++) {
+        const bool own = visible->of[i].group == pass;
         key = glint_key_add(key, &own, sizeof own);
     }
     return rest ? key : glint_key_add(key, g->ambient[pass], sizeof g->ambient[pass]);

@@ -19,15 +19,13 @@ struct glint_light_groups {
     bool has_ambient; ///< some share is above 0
 };
 
-/// Finds the groups named in the plan's description. Fails if no light of the scene has a group.
-glint_status glint_plan_find_light_groups(glint_plan *plan, const glint_scene *scene, glint_error *error);
-void glint_light_groups_free(struct glint_light_groups *groups); ///< NULL: nothing
-/// Returns the group of a light of the scene; GLINT_NO_GROUP if it has none, or without light passes.
-uint32_t glint_light_group_of(const glint_plan *plan, size_t light);
+/// Finds the groups named in the plan's description, and the group of each light.
+glint_status glint_light_groups_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
+void glint_light_groups_release(glint_plan *plan);
 /// Continues a key with the names of the passes and the groups of all lights.
 glint_key glint_light_groups_key(const glint_plan *plan, glint_key key);
-/// Continues a key with the lights of one pass. The file of a pass does not depend on the other passes.
-glint_key glint_light_pass_key(const glint_plan *plan, uint32_t pass, glint_key key);
+/// Continues a key with the lights of a light pass. The file of a pass does not depend on the other passes.
+glint_key glint_light_pass_key(const glint_plan *plan, int number, glint_key key);
 /// Returns whether two plans have the same passes, and each light the same group.
 bool glint_light_groups_equal(const glint_plan *a, const glint_plan *b);
 
