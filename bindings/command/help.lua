@@ -59,7 +59,7 @@ local function find(name, commands, my)
   local near
   for _, command in ipairs(commands) do
     if command.name == name then return command end
-    near = my.nearer(name, near, command.name)
+    near = the.nearer(name, near, command.name)
   end
   my.fail(2, name .. ": no such command; "
     .. (near and "did you mean '" .. near .. "'?" or "glint help lists them"))

@@ -65,13 +65,6 @@ int cli_read_number(lua_State *L)
     return 1;
 }
 
-// nearer(word, near, candidate): returns the one closer to the misspelt word; nil if neither is close.
-static int nearer(lua_State *L)
-{
-    lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));
-    return 1;
-}
-
 static void set_functions(lua_State *L, const cli_task *task, const luaL_Reg *functions)
 {
     lua_pushlightuserdata(L, (void *)task);
@@ -83,7 +76,7 @@ static void push_command(lua_State *L, const void *context)
 {
     static const luaL_Reg common[] = {
         { "fail", fail },   { "print", print },           { "event", event }, { "say", say },
-        { "nearer", nearer }, { "number", cli_read_number }, { NULL, NULL },
+        { "number", cli_read_number }, { NULL, NULL },
     };
     const cli_task *task = context;
     const cli_options *options = task->options;

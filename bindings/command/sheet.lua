@@ -6,7 +6,7 @@ local function find_map(my, name, maps)
   local near
   for i, known in ipairs(maps) do
     if known == name then return i end
-    near = my.nearer(name, near, known)
+    near = the.nearer(name, near, known)
   end
   my.fail(2, "--colorbar: viridis, magma, cividis, turbo or coolwarm expected, got '" .. name .. "'"
     .. (near and "; did you mean '" .. near .. "'?" or ""))

@@ -53,13 +53,6 @@ static int out_of_memory(lua_State *L)
 // refuse(message): fails the run, because an option is wrong.
 static int refuse(lua_State *L) { return refuse_option(L, "", luaL_checkstring(L, 1)); }
 
-// nearer(name, near, candidate): returns the one closer to the misspelt name; nil if neither is close.
-static int nearer(lua_State *L)
-{
-    lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));
-    return 1;
-}
-
 // ---- The report's folder ----
 
 static bool make_folders(const char *folder)
@@ -273,7 +266,7 @@ static int print(lua_State *L)
 }
 
 static const luaL_Reg functions[] = {
-    { "refuse", refuse }, { "nearer", nearer }, { "open", open_study },  { "live", live },
+    { "refuse", refuse }, { "open", open_study },  { "live", live },
     { "begin", begin },   { "finish", finish }, { "say", say },          { "show", show },
     { "now", now },       { "print", print },   { "write", write_file }, { NULL, NULL },
 };

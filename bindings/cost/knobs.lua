@@ -152,7 +152,7 @@ function the.check_knobs(list)
     if not known[name] then
       local near
       name = name:sub(1, 60)
-      for _, other in ipairs(names) do near = the.tools.nearer(name, near, other) end
+      for _, other in ipairs(names) do near = the.nearer(name, near, other) end
       the.tools.refuse(format("--knobs: list of %s expected, got '%s'%s", table.concat(names, ", "), name,
         near and format("; did you mean '%s'?", near) or ""))
     end

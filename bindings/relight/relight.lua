@@ -42,7 +42,7 @@ local function check_lights(my, lights, names, other, path)
   for _, light in ipairs(lights) do
     local near, is_found, all = nil, false, {}
     for _, name in ipairs(names) do
-      is_found, near = is_found or name == light.name, my.nearer(light.name, near, name)
+      is_found, near = is_found or name == light.name, the.nearer(light.name, near, name)
       if name ~= other then all[#all + 1] = "'" .. name .. "'" end
     end
     if not is_found then

@@ -63,6 +63,17 @@ static int json(lua_State *L)
     return 1;
 }
 
+// nearer(name, near, candidate): returns the one closer to the misspelt name; nil if neither is close.
+static int nearer(lua_State *L)
+{
+    lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));
+    return 1;
+}
+
+const luaL_Reg glintL_carried_functions[] = {
+    { "base64", base64 }, { "json", json }, { "nearer", nearer }, { NULL, NULL },
+};
+
 // ---- Loading ----
 
 typedef struct code_buffer {
@@ -108,10 +119,10 @@ typedef struct task {
 
 static int run_modules(lua_State *L)
 {
-    static const luaL_Reg tools[] = { { "base64", base64 }, { "json", json }, { NULL, NULL } };
     const task *what = lua_touserdata(L, 1);
     luaL_openlibs(L);
-    luaL_newlib(L, tools);
+    lua_newtable(L);
+    luaL_setfuncs(L, glintL_carried_functions, 0);
     for (size_t i = 0; i < what->count; i++) {
         const glintL_carried *module = &what->modules[i];
         if (luaL_loadbufferx(L, (const char *)module->text, module->size, module->name, "t") != LUA_OK)

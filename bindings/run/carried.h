@@ -30,6 +30,8 @@ extern const luaL_Reg glintL_sheet_functions[], glintL_sweep_functions[]; ///< C
 
 // ---- carried.c ----
 
+extern const luaL_Reg glintL_carried_functions[]; ///< for all modules
+
 typedef struct glintL_made_text {
     lua_State *state; ///< owned; holds the text
     const char *text;
@@ -39,8 +41,8 @@ typedef struct glintL_made_text {
 /// Pushes a module's function without line numbers, so that errors and warnings name the nearest line of the script.
 void glintL_load_stripped(lua_State *L, const glintL_carried *module);
 
-/// Runs the modules in order. Each is called with the same table, which has json(value) and base64(bytes), and adds its
-/// functions. Then calls the table's function `function` with the values pushed by `push` (it may raise), and stores
+/// Runs the modules in order. Each is called with the same table, which has json(value), base64(bytes) and nearer(name,
+/// near, candidate), and adds its functions. Then calls the table's function `function` with the values pushed by `push` (it may raise), and stores
 /// the returned string. False: `message` says why. The caller drops the text, on failure too.
 bool glintL_make_text(const glintL_carried *modules, size_t count, const char *function,
                       void (*push)(lua_State *L, const void *context), const void *context, glintL_made_text *out,

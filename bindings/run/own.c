@@ -69,13 +69,6 @@ static int spell_number(lua_State *L)
     return 1;
 }
 
-// nearer(name, near, candidate): returns the one closer to the misspelt name; nil if neither is close.
-static int nearer(lua_State *L)
-{
-    lua_pushstring(L, glintL_nearer(luaL_checkstring(L, 1), lua_tostring(L, 2), luaL_checkstring(L, 3)));
-    return 1;
-}
-
 // ---- The run ----
 
 static int note(lua_State *L)
@@ -142,7 +135,7 @@ static void push_own(lua_State *L)
 {
     static const luaL_Reg tools[] = {
         { "refuse", refuse },         { "raise", raise_message },       { "bad_key", bad_key }, { "check_list", check_list },
-        { "read_number", read_number }, { "is_object", is_object }, { "spell_number", spell_number }, { "nearer", nearer },
+        { "read_number", read_number }, { "is_object", is_object }, { "spell_number", spell_number },
         { "no_such_field", no_such_field }, { "is_vector", is_vector }, { "vector", vector }, { "note", note },             { "fail_run", fail_run },     { "is_readable", is_readable },   { NULL, NULL },
     };
     luaL_checkstack(L, 8, "modules");
@@ -152,6 +145,7 @@ static void push_own(lua_State *L)
         glintL_open_own(L);
     lua_pop(L, 2);
     luaL_newlib(L, tools);
+    luaL_setfuncs(L, glintL_carried_functions, 0);
     luaL_setfuncs(L, glintL_sheet_functions, 0);
     luaL_setfuncs(L, glintL_sweep_functions, 0);
     glintL_set_text(L, "version", GLINT_VERSION);
