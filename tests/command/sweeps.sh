@@ -37,6 +37,16 @@ check "the cheapest axis changes most often, and each step is on one axis" test 
 check "the sheet is there" test -s grid/sheet.png
 rm grid/sheet.png
 check "a second run keeps them" test "$("$GLINT" grid.lua --json -q | grep -c '"event":"frame".*"status":"kept"')" -eq 24
+cat >bare.lua <<'LUA'
+local sweep = dofile "grid.lua"
+for name in pairs(string) do string[name] = nil end
+for name in pairs(table) do table[name] = nil end
+ipairs, next, rawget, rawlen, tostring, type, math = nil
+return sweep
+LUA
+"$GLINT" bare.lua -o 'bare/%02d.png' -q 2>err || fail "a script without Lua's functions: $(cat err)"
+check "a script that removes Lua's functions gets the same sheet" cmp grid/sheet.png bare/sheet.png
+rm -rf bare
 rm grid/sheet.png
 same "the pictures of single frames" grid
 check "without reuse the order is the same" test "$(order grid.lua --no-reuse -f 1-12 -o 'none/%02d.png')" = "1 7 9 3 5 11 12 6 4 10 8 2 "
