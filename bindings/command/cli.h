@@ -269,9 +269,9 @@ typedef struct cli_task {
     int code; ///< the exit code
 } cli_task;
 
-/// Runs the modules and calls the function `run`, which returns the exit code or nothing. Its argument is a table with
-/// the functions of the task, of files.c, fail(code, message), print(text), event(text), say(text), number(text), and
-/// the command line. Returns the exit code.
+/// Runs the modules and calls the function `run`, which returns the exit code or nothing. Its argument is a table: the
+/// functions of the task, of files.c and of module.c, the options (see cli_push_options), `script`, `file` and the list
+/// `arguments`. Returns the exit code.
 int cli_run_module(cli_task *task, const glintL_carried *modules, size_t count);
 int cli_read_number(lua_State *L); ///< number(text): returns the number that the text is; nothing if it is none
 cli_task *cli_task_of(lua_State *L); ///< for C functions of a task

@@ -75,8 +75,8 @@ static void set_functions(lua_State *L, const cli_task *task, const luaL_Reg *fu
 static void push_command(lua_State *L, const void *context)
 {
     static const luaL_Reg common[] = {
-        { "fail", fail },   { "print", print },           { "event", event }, { "say", say },
-        { "number", cli_read_number }, { NULL, NULL },
+        { "fail", fail }, { "print", print },            { "event", event },
+        { "say", say },   { "number", cli_read_number }, { NULL, NULL },
     };
     const cli_task *task = context;
     const cli_options *options = task->options;
