@@ -247,7 +247,7 @@ static void some_things_move(void **unused)
     const uint64_t first = other ? 1000 * strtoull(other, NULL, 10) : 0;
     double casts = 0, shadows = 0;
     int frames = 0;
-    for (int seed = 0; seed < WORLDS; seed++) {
+    for (int seed = 0; seed < WORLDS; seed += (int)case_step()) {
         world w;
         glint_renderer *renderers[2];
         glint_renderer_desc desc = glint_renderer_desc_default();
@@ -279,7 +279,8 @@ static void some_things_move(void **unused)
     }
     print_message("%d frames, %.2f of their hits and %.2f of their shadows reused\n", frames, casts / frames,
                   shadows / frames);
-    assert_true(casts > 0.5 * frames && shadows > (first ? 0.4 : 0.65) * frames);
+    if (case_step() == 1) // the shares of a few worlds may be far from the average
+        assert_true(casts > 0.5 * frames && shadows > (first ? 0.4 : 0.65) * frames);
 }
 
 // ---- Between a light and the points of a tile ----
@@ -326,7 +327,7 @@ static void balls_between(void **unused)
     desc.width = 224;
     desc.height = 152;
     random_state = 5;
-    for (int seed = 0; seed < 60; seed++) {
+    for (int seed = 0; seed < 60; seed += (int)case_step()) {
         world w;
         glint_plan *plan;
         make_world(&w);
@@ -358,7 +359,7 @@ static void balls_between(void **unused)
         free_world(&w);
     }
     print_message("%u of %u balls that are not between are known not to be\n", said, clear);
-    assert_true(clear > 500 && said > 0.95 * clear);
+    assert_true(clear * case_step() > 500 && said > 0.95 * clear);
 }
 
 int main(void)

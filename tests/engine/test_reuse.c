@@ -15,6 +15,7 @@
 #include "engine/film/image.h"
 #include "engine/stages/stages.h"
 #include "engine/tile/tile.h"
+#include "tests/engine/cases/step.h"
 
 #define SHAPES 7
 #define LIGHTS 6 ///< one of each kind
@@ -796,7 +797,7 @@ static void frames_that_come_back(void **unused)
         w.render.samples = 4;
         w.render.adaptive = round % 2 ? 0.03 : 0.3;
         w.render.codes = round % 3 < 2;
-        for (int frame = 0; frame < 60; frame++) {
+        for (int frame = 0; frame < 60 / (int)case_step(); frame++) {
             go_back(&w);
             render_both(&w, both, NULL, frame);
         }

@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "tests/engine/cases/step.h"
+
 enum { LIGHTS = 2, CROWD = 400 }; // CROWD: number of spheres behind the eye, so that caching lights is worthwhile
 
 typedef struct stand {
@@ -304,7 +306,7 @@ static void come_back(size_t memory, int frames)
 static void frames_in_any_order(void **unused)
 {
     (void)unused;
-    for (uint64_t round = 0; round < 8; round++) {
+    for (uint64_t round = 0; round < 8; round += case_step()) {
         state = 900 + round;
         come_back(0, 150);
     }
@@ -315,7 +317,7 @@ static void frames_in_any_order_with_little_memory(void **unused)
     (void)unused;
     for (size_t memory = 300000; memory < 40000000; memory *= 2) {
         state = 1000 + memory;
-        come_back(memory, 60);
+        come_back(memory, 60 / (int)case_step());
     }
 }
 

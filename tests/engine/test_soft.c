@@ -10,7 +10,7 @@
 
 #include "tests/engine/cases/floor_scene.h"
 
-#define SIDE 96
+#define SIDE 48
 
 /// A floor seen from above at an angle.
 static glint_scene *make_slanted_floor(void) { return make_floor((double[3]) { 0, 8, 9 }, (double[3]) { 0, 0, 0 }); }

@@ -1,5 +1,6 @@
 /// Test cases for mirrors and glass: Fresnel and Snell at and around the critical angle, mirrors that face each
 /// other, chains of up to a million reflections, and total reflection.
+#include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
@@ -87,7 +88,7 @@ static void fresnel(void)
     check_fresnel("M4", "1.5 -> 1 at cos 0.75", 1.5, true, 0.75, 0.5);
     const bool table = hard_table;
     hard_table = false; // too many rows for the table
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; i += (int)case_step()) {
         const double ior = chance(0.3) ? 1 + log_uniform(1e-6, 1) : log_uniform(0.1, 10);
         check_fresnel("M3", "random", ior, chance(0.5), chance(0.3) ? log_uniform(1e-6, 1) : uniform(0, 1), NAN);
     }

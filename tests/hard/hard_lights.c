@@ -1,6 +1,7 @@
 /// Test cases for lights: at the shaded point, inside shapes, far away, spots, area lights, and sums of very many
 /// lights. Each case is rendered in double and float, compared with the textbook's formula,
 /// and repeated with other numbers.
+#include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
@@ -229,7 +230,7 @@ static void whole_spots(int scenes)
 
 static void spots(void)
 {
-    whole_spots(100);
+    whole_spots(100 / (int)case_step());
     check_spot("L6", "inner = outer = 25, 24.999 off", 25 * DEGREE, 25 * DEGREE, 0, 24.999 * DEGREE, 1);
     check_spot("L6", "inner = outer = 25, 25.001 off", 25 * DEGREE, 25 * DEGREE, 0, 25.001 * DEGREE, 0);
     check_spot("L6", "inner = outer = 0, on the axis", 0, 0, 0, 0, NAN);
@@ -241,7 +242,7 @@ static void spots(void)
     check_spot("L7", "inner 89, outer 179, 85 off", 89 * DEGREE, 179 * DEGREE, 0, 85 * DEGREE, NAN);
     const bool table = hard_table;
     hard_table = false; // too many rows for the table
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; i += (int)case_step()) {
         const double outer = uniform(0, 3.14), inner = uniform(0, outer), exponent = chance(0.5) ? 0 : uniform(0, 50);
         check_spot("L7", "random", inner, outer, exponent, uniform(0, 1.4), NAN);
     }
@@ -302,6 +303,6 @@ int main(int argc, char **argv)
     within();
     far_and_near();
     spots();
-    sums(1000000);
+    sums(1000000 / (int)case_step());
     return hard_end();
 }

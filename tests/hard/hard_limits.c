@@ -2,6 +2,7 @@
 /// sizes, the most lights, the most spheres, and empty scenes;
 /// for each instruction set and several numbers of threads.
 #include "tests/engine/cases/sets.h"
+#include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/still.h"
 
@@ -516,8 +517,8 @@ int main(int argc, char **argv)
     check_written();
     check_small();
     check_sides();
-    check_lights(1000000);
-    check_crowd(soak ? 1000000 : 100000);
+    check_lights(1000000 / (int)case_step());
+    check_crowd(soak ? 1000000 : 100000 / (int)case_step());
     check_nothing();
     return hard_end();
 }

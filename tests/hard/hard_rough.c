@@ -1,5 +1,6 @@
 /// Rays of a rough mirror, with roughness 1e-4 to 1 and at grazing angles, against integrals in 113 bits. The sky is
 /// white on one side of a plane and black on the other, and the edge goes through the lobe.
+#include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/oracle_rough.h"
 
@@ -102,14 +103,12 @@ static double compare(bool beckmann, double roughness, double cosine)
 
 int main(int argc, char **argv)
 {
-    static const double roughness[] = { 1e-4, 9e-4, 2e-3, 0.01, 0.1, 0.3, 0.6, 1 }, cosine[] = { 0.999, 0.6, 0.1, 0.01 };
+    static const double roughness[8] = { 1e-4, 9e-4, 2e-3, 0.01, 0.1, 0.3, 0.6, 1 }, cosine[4] = { 0.999, 0.6, 0.1, 0.01 };
     double worst = 0;
     hard_begin(argc, argv);
     hard_test("rough", "the rays of rough mirrors under a step");
-    for (int beckmann = 0; beckmann < 2; beckmann++)
-        for (size_t r = 0; r < sizeof roughness / sizeof *roughness; r++)
-            for (size_t k = 0; k < sizeof cosine / sizeof *cosine; k++)
-                worst = fmax(worst, compare(beckmann, roughness[r], cosine[k]));
+    for (int i = 0; i < 2 * 8 * 4; i += (int)case_step())
+        worst = fmax(worst, compare(i % 2, roughness[i / 2 % 8], cosine[i / 16]));
     if (hard_table)
         printf("\nRough mirrors under a step, roughness 1e-4 .. 1: worst error %.2f of the bound.\n", worst);
     return hard_end();

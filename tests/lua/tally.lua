@@ -4,6 +4,13 @@ package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 local tally = { passed = 0, failed = 0 }
 tally.instruction_sets = { "ref", "generic", "avx2", "avx512" } -- a machine or a build may lack the last ones
 
+-- Tests of random cases run every step-th case. step is 1, or GLINT_CASE_STEP under a sanitizer, which looks for faults
+-- of memory and arithmetic instead of wrong statistics.
+tally.step = tonumber(os.getenv "GLINT_CASE_STEP" or 1)
+
+-- Returns the side of a picture in pixels: n, or with a step so much less that the picture has n * n / step pixels.
+function tally.side(n) return math.ceil(n / math.sqrt(tally.step)) end
+
 -- Appends { "GLINT_ISA=NAME", options } for each instruction set to a list of runs, and returns the list.
 function tally.with_sets(runs, options)
   for _, name in ipairs(tally.instruction_sets) do runs[#runs + 1] = { "GLINT_ISA=" .. name, options } end

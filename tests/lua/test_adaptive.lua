@@ -179,8 +179,8 @@ local function read(path)
 end
 local function picture(environment, options, ending)
   local path = os.tmpname()
-  local line = ("%s %s scripts/moving_light.lua -f 1-31:10 --samples 6 --adaptive 0.04 --size 90x60 --quiet --force %s -o %s_%%04d.%s 2>%s")
-    :format(environment, command, options, path, ending, path)
+  local line = ("%s %s scripts/moving_light.lua -f 1-31:10 --samples 6 --adaptive 0.04 --size %dx%d --quiet --force %s -o %s_%%04d.%s 2>%s")
+    :format(environment, command, tally.side(90), tally.side(60), options, path, ending, path)
   os.execute(line)
   local said = read(path)
   local all = {}

@@ -398,8 +398,8 @@ check(m.mirror.x == 0, "and it follows again")
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local function picture(environment, options)
   local path = os.tmpname()
-  local line = ("%s %s scripts/mirror_and_glass.lua --size 90x60 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command,
-    options, path, path)
+  local line = ("%s %s scripts/mirror_and_glass.lua --size %dx%d --quiet --force %s -o %s.pfm 2>%s"):format(environment, command,
+    tally.side(90), tally.side(60), options, path, path)
   local ok = os.execute(line)
   local file = ok and io.open(path .. ".pfm", "rb")
   local bytes = file and file:read "a"

@@ -303,19 +303,6 @@ end
 local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local script = os.tmpname()
 
-local function run(environment, options, frame)
-  local path = os.tmpname()
-  local ok = os.execute(("%s %s %s --size 75x53 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command, script, options, path, path))
-  local name = ("%s_%04d.pfm"):format(path, frame)
-  local file = ok and io.open(name, "rb")
-  local bytes = file and file:read "a"
-  if file then file:close() end
-  local said = io.open(path):read "a"
-  for n = 1, 4 do os.remove(("%s_%04d.pfm"):format(path, n)) end
-  os.remove(path)
-  return bytes, said
-end
-
 function tests.one_picture_by_every_way()
   local sky = os.tmpname() .. ".png"
   local picture = png.new(16, 8)
@@ -343,24 +330,7 @@ return glint.animation { scene = scene, frames = 4, samples = 2, frame = functio
 end }
 ]]):format(sky))
   file:close()
-  for _, precision in ipairs { "double", "float" } do
-    for frame = 3, 4 do
-      local usual, message = run("", ("-f 1-%d --precision %s"):format(frame, precision), frame)
-      check(usual, "a picture: %s", message)
-      for _, way in ipairs(tally.with_sets({
-        { "", "--threads 1" }, { "", "--threads 7 --no-reuse" }, { "", "--shard " .. frame .. "/4" }, { "", "--reuse-memory 1M" },
-      }, "")) do
-        local frames = way[2]:find "shard" and "" or "-f " .. frame
-        local other, said = run(way[1], ("%s %s --precision %s"):format(way[2], frames, precision), frame)
-        local name = ("%s %s %s, frame %d"):format(precision, way[1], way[2], frame)
-        if not other and said:find("this machine lacks", 1, true) then
-          print("# skip " .. name)
-        else
-          check(other == usual, "the same picture: %s %s", name, other and "" or said)
-        end
-      end
-    end
-  end
+  for frame = 3, 4 do dofile "tests/lua/everywhere.lua"(tally, script, frame, 4) end
   os.remove(sky)
 end
 

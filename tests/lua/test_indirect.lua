@@ -313,7 +313,6 @@ end
 
 -- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
-local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
 local script = os.tmpname()
 do
   local file = assert(io.open(script, "w"))
@@ -337,34 +336,7 @@ end }
 ]]
   file:close()
 end
-local function picture(environment, options, frame)
-  local path = os.tmpname()
-  local line = ("%s %s %s --size 75x53 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command, script, options, path, path)
-  local ok = os.execute(line)
-  local name = ("%s_%04d.pfm"):format(path, frame)
-  local file = ok and io.open(name, "rb")
-  local bytes = file and file:read "a"
-  if file then file:close() end
-  local said = io.open(path):read "a"
-  for n = 1, 3 do os.remove(("%s_%04d.pfm"):format(path, n)) end
-  os.remove(path)
-  return bytes, said
-end
-for _, precision in ipairs { "double", "float" } do
-  local usual = picture("", "-f 2-3 --precision " .. precision, 3)
-  check(usual, "a picture")
-  for _, way in ipairs(tally.with_sets({
-    { "", "--threads 1 -f 3" }, { "", "--threads 7 --no-reuse" }, { "", "--shard 3/3" }, { "", "--reuse-memory 1M" },
-  }, "-f 3")) do
-    local other, said = picture(way[1], way[2] .. " --precision " .. precision, 3)
-    local name = ("%s %s %s"):format(precision, way[1], way[2])
-    if not other and said:find("this machine lacks", 1, true) then
-      print("# skip " .. name)
-    else
-      check(other == usual, "the same picture: %s %s", name, other and "" or said)
-    end
-  end
-end
+dofile "tests/lua/everywhere.lua"(tally, script, 3, 3)
 os.remove(script)
 
 tally.finish()

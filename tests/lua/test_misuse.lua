@@ -83,7 +83,7 @@ for name, f in pairs(glint) do
 end
 table.sort(calls)
 for _, name in ipairs(calls) do
-  for _ = 1, 400 do try(name, glint[name], value(2), value(1), value(1)) end
+  for _ = 1, 400, tally.step do try(name, glint[name], value(2), value(1), value(1)) end
 end
 
 -- These methods are not called: {} and nil are valid arguments, and a frame is slow.
@@ -93,7 +93,7 @@ for _, kind in ipairs(KINDS) do
   for member in pairs(glint._fields()[kind]) do members[#members + 1] = member end
   table.sort(members)
   for _, member in ipairs(members) do
-    for _ = 1, 200 do
+    for _ = 1, 200, tally.step do
       local object = objects()[kind]
       local what = kind .. "." .. member
       if glint._fields()[kind][member] == "field" then
@@ -106,7 +106,7 @@ for _, kind in ipairs(KINDS) do
       end
     end
   end
-  for _ = 1, 200 do
+  for _ = 1, 200, tally.step do
     local object, key = objects()[kind], value(1)
     try(kind, function() return object[key] end)
     try(kind, function() object[key] = value(1) end)

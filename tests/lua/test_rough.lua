@@ -277,36 +277,12 @@ end }
 ]]
 
 function tests.same_everywhere()
-  local command, script, out = os.getenv "GLINT" or "build/glint", os.tmpname(), os.tmpname()
-  local file <close> = assert(io.open(script, "w"))
+  local script = os.tmpname()
+  local file = assert(io.open(script, "w"))
   file:write(EVERYTHING)
-  file:flush()
-  local function picture(environment, options)
-    local line = ("%s %s %s --size 75x53 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command, script, options, out, out)
-    local done = os.execute(line) and io.open(out .. "_0004.pfm", "rb")
-    local bytes = done and done:read "a"
-    if done then done:close() end
-    for n = 1, 4 do os.remove(("%s_%04d.pfm"):format(out, n)) end
-    local said <close> = io.open(out)
-    return bytes, said:read "a"
-  end
-  for _, precision in ipairs { "double", "float" } do
-    local usual = picture("", "--precision " .. precision)
-    check(usual, "a picture")
-    for _, way in ipairs(tally.with_sets({
-      { "", "--threads 1 -f 4" }, { "", "--threads 7 --no-reuse" }, { "", "--shard 4/4" }, { "", "--reuse-memory 1M" },
-    }, "-f 4")) do
-      local other, said = picture(way[1], way[2] .. " --precision " .. precision)
-      local name = ("%s %s %s"):format(precision, way[1], way[2])
-      if not other and said:find("this machine lacks", 1, true) then
-        print("# skip " .. name)
-      else
-        check(other == usual, "the same picture: %s %s", name, other and "" or said)
-      end
-    end
-  end
+  file:close()
+  dofile "tests/lua/everywhere.lua"(tally, script, 4, 4)
   os.remove(script)
-  os.remove(out)
 end
 
 tally.run(tests)

@@ -91,7 +91,7 @@ function tests.a_ball_shades_the_plane()
   local ball = glint.sphere { center = { 0, up, 0 }, radius = size, material = matt }
   local function share(x, z)
     local across = glint.unit { sun.z, 0, -sun.x }
-    local beside, lit, count = sun:cross(across), 0, 4000
+    local beside, lit, count = sun:cross(across), 0, 4000 // tally.step
     for k = 1, count do
       local r, turn = math.sin(radius) * math.sqrt((k - 0.5) / count), 2 * math.pi * (k * 0.6180339887498949 % 1)
       local d = sun * math.sqrt(1 - r * r) + across * (r * math.cos(turn)) + beside * (r * math.sin(turn))
@@ -345,21 +345,6 @@ end
 
 -- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
-local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
-
-local function read(environment, script, options)
-  local path = os.tmpname()
-  local ok = os.execute(("%s %s %s --size 75x53 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command, script,
-    options, path, path))
-  local file = ok and io.open(path .. "_0003.pfm", "rb")
-  local bytes = file and file:read "a"
-  if file then file:close() end
-  local said = io.open(path):read "a"
-  for n = 1, 3 do os.remove(("%s_%04d.pfm"):format(path, n)) end
-  os.remove(path)
-  return bytes, said
-end
-
 function tests.one_picture_by_every_way()
   local script = os.tmpname()
   local file = assert(io.open(script, "w"))
@@ -381,22 +366,7 @@ local scene = glint.scene {
 return glint.animation { scene = scene, frames = 3, samples = 2, frame = function(_, n) turn = n == 3 and 0.5 or 0 end }
 ]]
   file:close()
-  for _, precision in ipairs { "double", "float" } do
-    local usual, message = read("", script, "-f 1-3 --precision " .. precision)
-    check(usual, "a picture: %s", message)
-    for _, way in ipairs(tally.with_sets({
-      { "", "-f 3 --threads 1" }, { "", "-f 1-3 --threads 7 --no-reuse" }, { "", "--shard 3/3" },
-      { "", "-f 1-3 --reuse-memory 1M" },
-    }, "-f 3")) do
-      local other, said = read(way[1], script, way[2] .. " --precision " .. precision)
-      local what = ("%s %s %s"):format(precision, way[1], way[2])
-      if not other and said:find("this machine lacks", 1, true) then
-        print("# skip " .. what)
-      else
-        check(other == usual, "the same picture: %s %s", what, other and "" or said)
-      end
-    end
-  end
+  dofile "tests/lua/everywhere.lua"(tally, script, 3, 3)
   os.remove(script)
 end
 

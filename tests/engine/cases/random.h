@@ -4,7 +4,8 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdlib.h>
+
+#include "tests/engine/cases/step.h"
 
 static uint64_t random_state;
 
@@ -22,14 +23,5 @@ static inline uint32_t below(uint32_t n) { return (uint32_t)((random_bits() >> 3
 static inline bool one_in(uint32_t n) { return below(n) == 0; }
 
 static inline double between(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
-
-/// Returns n: the tests run every n-th case. n is 1, or GLINT_CASE_STEP where all cases would take too long (on an
-/// emulated machine, under a sanitizer). It must be coprime to 5 and 6, the periods of the kinds of cases, or some
-/// kinds would never run.
-static inline uint32_t case_step(void)
-{
-    const char *step = getenv("GLINT_CASE_STEP");
-    return step ? (uint32_t)strtoul(step, NULL, 10) : 1;
-}
 
 #endif
