@@ -50,6 +50,7 @@ function pictures(file, pattern) {
 }
 const steps = ["ambient", "diffuse", "specular", "all"].map(step => [`workshop_${step}`, "workshop", ["--set", `step=${step}`]])
 const golden = [...steps, ...pictures("tests/command/golden.sh", /^picture (\w+) scripts\/(\w+)\.lua(.*)$/)]
+const quick = { furnace: ["--set", "steps=8"] } // the sums of its 40 steps take longer than all other pictures together
 const notHere = new Set(["gr_room", "gr_scene"]) // only the command has the gr dialect
 const gallery = pictures("tests/command/gallery.sh", /^picture ((\w+))(.*)$/)
 const flake = `${OUT}/flake.nff`
@@ -90,7 +91,7 @@ async function comparePicture(name, script, words, size, codes) {
 for (const [name, script, words] of golden)
   if (!notHere.has(script)) await test(`golden ${name}`, () => comparePicture(name, script, words, ["--size", "64x48"], `tests/golden/${name}.png`))
 for (const [name, script, words] of gallery)
-  if (!notHere.has(script)) await test(`gallery ${name}`, () => comparePicture(`gallery_${name}`, script, words, ["--size", "80x50"]))
+  if (!notHere.has(script)) await test(`gallery ${name}`, () => comparePicture(`gallery_${name}`, script, words, ["--size", "80x50", ...quick[script] ?? []]))
 
 
 // ---- The case of the twenty cylinders ----
