@@ -366,7 +366,9 @@ for script in "$root"/scripts/*.lua; do
     name=$(basename "$script") options='' size=64x36
     [[ $name != gr_* ]] || options=--dialect=gr
     [ "$name" != furnace.lua ] || options="--set steps=8" # the sums of 40 take half a minute
-    one=${PRELOAD:+-f 1}                   # with a sanitizer, all frames would take minutes
+    one=
+    [[ $name != @(sky|toon_teapot).lua ]] || one="-f 1-96:19" # all frames would take a minute
+    [ -z "${PRELOAD:-}" ] || one="-f 1"    # with a sanitizer, all frames would take minutes
     [ "$name" != fit.lua ] || one=         # fit.lua needs all of its frames
     [ "$name" != lobes.lua ] || size=64x25 # a narrower picture would cut off the ends
     case $name in # letters of 10 pixels must fit
