@@ -33,7 +33,6 @@ static inline const glint_visible_lights *glint_visible_lights_of(const glint_pl
     return plan->own[GLINT_STAGE_VISIBLE_LIGHT] ? plan->own[GLINT_STAGE_VISIBLE_LIGHT] : &none;
 }
 
-
 glint_status glint_visible_lights_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error);
 
 #endif
