@@ -379,11 +379,10 @@ SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gall
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
-# ASan sees every access of the kernels: UBSan need not look for null pointers, the sizes of objects and pointers that
-# overflow there. The last check alone would take three quarters of the time of their compilation.
+# ASan sees every access of the kernels: UBSan need not look for null pointers and the sizes of objects there.
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/, with the generic kernels and the best of this machine
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g1" KERNEL_CFLAGS="-O1 -fno-sanitize=null,object-size,pointer-overflow" \
+	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g1" KERNEL_CFLAGS="-O1 -fno-sanitize=null,object-size" \
 	    SANITIZE=address,undefined,float-cast-overflow KERNELS="$(sort generic $(BEST))" PRELOAD=libasan.so ITEMS='$$(TEST_BIN) $$(HARD_BIN) $$(SANITIZED)'
 
 tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/run/carried.h"
 
 #define PI 0x1.921fb54442d18p+1
 
@@ -27,6 +27,28 @@ typedef struct gathering {
     glint_slope *out; // NULL: only counts
     size_t count;
 } gathering;
+
+// The slopes of a frame. Retains their objects, which the script may have dropped: an object in no scene is found until
+// it is collected.
+typedef struct slope_list {
+    size_t slope_count;
+    glint_derivative of[GLINT_DERIVATIVES_MAX];
+    char names[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE];
+    glint_slope slopes[];
+} slope_list;
+
+static int drop_list(lua_State *L)
+{
+    slope_list *list = lua_touserdata(L, 1);
+    for (; list->slope_count > 0; list->slope_count--) {
+        const glint_slope *slope = &list->slopes[list->slope_count - 1];
+        glint_material_release((glint_material *)slope->material);
+        glint_light_release((glint_light *)slope->light);
+        glint_shape_release((glint_shape *)slope->shape);
+        glint_camera_release((glint_camera *)slope->camera);
+    }
+    return 0;
+}
 
 // Returns the derivative of a field's program by a variable; NULL: it is 0, or there is no program.
 static const glint_program *find_tangent(const glintL_class *class, const void *object, const glintL_field *field, int variable)
@@ -60,8 +82,11 @@ static void gather_object(lua_State *L, int index, const char *type, int variabl
         slope.light = strcmp(type, GLINTL_LIGHT) == 0 ? object : NULL;
         slope.shape = strcmp(type, GLINTL_SHAPE) == 0 ? object : NULL;
         slope.camera = strcmp(type, GLINTL_CAMERA) == 0 ? object : NULL;
-        if (g->out)
+        if (g->out) {
             g->out[g->count] = slope;
+            if (strcmp(type, GLINTL_SCENE) != 0)
+                class->retain(object); // drop_list releases it
+        }
         g->count++;
     }
 }
@@ -107,11 +132,8 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
     }
     // The allocation may collect objects, and their finalizers may change others. So at most as many slopes are stored
     // as were counted.
-    struct {
-        glint_derivative of[GLINT_DERIVATIVES_MAX];
-        char names[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE];
-        glint_slope slopes[];
-    } *list = lua_newuserdatauv(L, sizeof *list + total * sizeof *list->slopes, 0);
+    slope_list *list = glintL_push_owner(L, sizeof *list + total * sizeof *list->slopes, "glint.slopes", drop_list);
+    list->slope_count = total;
     lua_rawsetp(L, LUA_REGISTRYINDEX, &LIST);
     for (int i = 0; i < count; i++) {
         gathering g = { .scene = scene };
