@@ -130,6 +130,21 @@ function tests.level_here_is_no_error()
   refused("a pattern without it", scene_of(lamp, { material = glint.material { diffuse = glint.pattern(function(p) return p.x end) } }))
 end
 
+-- Lights in no scene, which are collected at any time, also while a frame is planned.
+function tests.objects_in_no_scene_are_collected()
+  local x = glint.variable("x", 2)
+  local scene = scene_of(glint.point_light { position = { 2, 4, x } })
+  local function slope() return render(scene, "d:x", { width = 4, height = 4 }):pixel(2, 1, "d:x") end
+  local usual = slope()
+  collectgarbage "generational"
+  for i = 1, 2000 do
+    for _ = 1, 3 do glint.point_light { position = { x, 0, 0 } } end
+    local now = slope()
+    if now ~= usual then check(false, "slope %g at picture %d, first %g", now, i, usual) end
+  end
+  collectgarbage "incremental"
+end
+
 -- Area lights against differences of pictures, which float32 limits to five digits. Samples move with their light.
 function tests.area_lights_against_differences()
   local function compare(name, make, at, h)
