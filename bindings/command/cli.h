@@ -35,7 +35,7 @@ typedef enum cli_words { ///< words that follow a command's name
     CLI_FILE_SCRIPT
 } cli_words;
 
-typedef enum cli_needs { ///< what a command needs before it begins
+typedef enum cli_needs { ///< requirements of a command
     CLI_NOTHING,
     CLI_SIGNALS, ///< a signal removes the drafts and ends the process
     CLI_RUN
@@ -260,7 +260,7 @@ void cli_print_params(lua_State *L, FILE *out);
 
 /// A command whose logic is in Lua modules.
 typedef struct cli_task {
-    const char *name; ///< of the command, which begins messages; NULL: messages begin otherwise
+    const char *name; ///< name of the command, at the start of messages; NULL: messages have no name
     const cli_options *options;
     cli_output *output;
     glintL_run *run; ///< NULL: the command needs none

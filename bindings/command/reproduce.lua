@@ -38,7 +38,7 @@ local function request(my, text)
   if wrong then my.fail(UNREADABLE, wrong) end
 end
 
--- Texts whose change is a reason by itself, and their names.
+-- The texts whose change explains a difference, and their names in messages.
 local NAMED <const> = { { "Software", "engine version" }, { "glint:script", "script" }, { "glint:encoder", "encoder" } }
 
 -- Returns why the files differ, as far as their texts show.

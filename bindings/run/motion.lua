@@ -78,7 +78,7 @@ local function read_finite(value, path)
   return x
 end
 
--- Returns how many numbers a value has: a number, a vector, or a list of numbers; and whether it is one of the latter.
+-- Returns how many numbers a value has: a number, a vector, or a list of numbers; and whether it is a vector or a list.
 local function size_of(value, path)
   if type(value) == "number" then return 1, false end
   if the.is_vector(value) then return 3, true end

@@ -106,7 +106,7 @@ function M.find(sheet, pictures)
   local pass = new_axis("pass", #pictures, function(cell) return pictures[cell].pass or "beauty" end)
   if #pass.values > 1 and #axes < AXES_MAX then axes[#axes + 1] = pass end
   axes.is_grid = is_grid(axes)
-  if not axes.is_grid then -- passes change fastest; so does the last name in files made by nested shell loops
+  if not axes.is_grid then -- passes, and the last name in files of nested loops, change fastest
     sort_axes(axes)
     axes.is_grid = is_grid(axes)
     if not axes.is_grid then sort(axes, function(a, b) return a.rank < b.rank end) end

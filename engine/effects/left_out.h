@@ -1,5 +1,5 @@
 /// The stages of an effect in a build without it (make WITHOUT="indirect bounce"). NAME/left_out.c declares them in such
-/// a build, in place of the other files of the folder. An effect without this file cannot be left out. Internal.
+/// a build, instead of the other files of the folder. An effect without this file cannot be left out. Internal.
 #ifndef GLINT_LEFT_OUT_H
 #define GLINT_LEFT_OUT_H
 
@@ -18,7 +18,7 @@
         (void)plan, (void)from; \
         return (needed) ? GLINT_FAIL_LEFT_OUT(error, effect, field, what) : GLINT_OK; \
     } \
-    static bool calls_##name(const glint_plan *plan) { return plan == NULL; } \
+    static bool calls_##name(const glint_plan *plan) { return (void)plan, false; } \
     const glint_stage glint_stage_##name = { .prepare = refuse_##name, .called = calls_##name };
 
 #endif

@@ -106,7 +106,7 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-/// Lines drawn over beauty are those of the pixels' centres.
+/// The lines drawn over beauty are found at the pixels' centres.
 static glint_key pass_key(const glint_plan *plan, int pass, glint_key key)
 {
     if (pass != GLINT_PASS_BEAUTY || !plan->desc.outline)
