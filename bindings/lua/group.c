@@ -63,10 +63,9 @@ int glintL_group_remove(lua_State *L)
     return 0;
 }
 
-int glintL_group_count(lua_State *L)
+void glintL_group_push_at(lua_State *L, const void *group, size_t index)
 {
-    lua_pushinteger(L, (lua_Integer)glint_group_count(check_group(L, 1)));
-    return 1;
+    glintL_push_object(L, GLINTL_SHAPE, glint_group_child(group, index));
 }
 
 void glintL_group_fill(lua_State *L, int list, int index, const char *name)

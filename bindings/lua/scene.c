@@ -179,33 +179,21 @@ static int drop(lua_State *L)
     return 0;
 }
 
-// Returns the objects in their order of definition: shapes, lights, then labels and other overlays.
-static int objects(lua_State *L)
+// The objects of a scene, in their order of definition: shapes, lights, then labels and other overlays.
+static lua_Integer count(const void *scene)
 {
-    const glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
-    lua_Integer count = 0;
-    lua_settop(L, 1);
-    lua_newtable(L);
-    for (size_t i = 0; (scene = glintL_check_object(L, 1, GLINTL_SCENE)) && i < glint_scene_shape_count(scene); i++) {
-        glintL_push_object(L, GLINTL_SHAPE, glint_scene_shape_at(scene, i));
-        lua_rawseti(L, 2, ++count);
-    }
-    for (size_t i = 0; (scene = glintL_check_object(L, 1, GLINTL_SCENE)) && i < glint_scene_light_count(scene); i++) {
-        glintL_push_object(L, GLINTL_LIGHT, glint_scene_light_at(scene, i));
-        lua_rawseti(L, 2, ++count);
-    }
-    for (size_t i = 0; (scene = glintL_check_object(L, 1, GLINTL_SCENE)) && i < glint_scene_overlay_count(scene); i++) {
-        glintL_push_object(L, GLINTL_OVERLAY, glint_scene_overlay_at(scene, i));
-        lua_rawseti(L, 2, ++count);
-    }
-    return 1;
+    return (lua_Integer)(glint_scene_shape_count(scene) + glint_scene_light_count(scene) + glint_scene_overlay_count(scene));
 }
 
-static int count_objects(lua_State *L)
+static void push_at(lua_State *L, const void *scene, size_t index)
 {
-    const glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
-    lua_pushinteger(L, (lua_Integer)(glint_scene_shape_count(scene) + glint_scene_light_count(scene) + glint_scene_overlay_count(scene)));
-    return 1;
+    const size_t shapes = glint_scene_shape_count(scene), lights = glint_scene_light_count(scene);
+    if (index < shapes)
+        glintL_push_object(L, GLINTL_SHAPE, glint_scene_shape_at(scene, index));
+    else if (index - shapes < lights)
+        glintL_push_object(L, GLINTL_LIGHT, glint_scene_light_at(scene, index - shapes));
+    else
+        glintL_push_object(L, GLINTL_OVERLAY, glint_scene_overlay_at(scene, index - shapes - lights));
 }
 
 // ---- Rays ----
@@ -277,7 +265,7 @@ static int render(lua_State *L)
 }
 
 static const luaL_Reg METHODS[] = {
-    { "add", add }, { "remove", drop }, { "cast", cast }, { "objects", objects }, { "render", render }, { NULL, NULL } };
+    { "add", add }, { "remove", drop }, { "cast", cast }, { "objects", glintL_list_objects }, { "render", render }, { NULL, NULL } };
 
 static const glintL_class CLASS = {
     .type = GLINTL_SCENE,
@@ -286,7 +274,9 @@ static const glintL_class CLASS = {
     .set = set,
     .retain = retain,
     .release = release,
-    .methods = METHODS };
+    .methods = METHODS,
+    .count = count,
+    .push_at = push_at };
 
 static void add_list(lua_State *L)
 {
@@ -365,9 +355,6 @@ void glintL_open_scene(lua_State *L)
 {
     glintL_open_class(L, &CLASS);
     glintL_list_object(L, &SCENE, &CLASS);
-    luaL_getmetatable(L, GLINTL_SCENE);
-    glintL_set_function(L, "__len", count_objects);
-    lua_pop(L, 1);
     glintL_set_function(L, "scene", new_scene);
     glintL_set_function(L, "ambient_occlusion", new_ambient_occlusion);
 }

@@ -6,9 +6,10 @@
 
 typedef glint_shape_desc desc_type;
 
-static const luaL_Reg GROUP_GETTERS[] = { { "count", glintL_group_count }, { NULL, NULL } };
+static const luaL_Reg GROUP_GETTERS[] = { { "count", glintL_count_objects }, { NULL, NULL } };
 static const luaL_Reg GROUP_METHODS[] = { { "add", glintL_group_add },
                                           { "remove", glintL_group_remove },
+                                          { "objects", glintL_list_objects },
                                           { NULL, NULL } };
 
 // Pushes the list of materials of glint.spheres { materials = ... } or of a mesh's file; nil for other shapes.
@@ -79,6 +80,11 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_DIFFERENCE] = { .name = "difference", .kind = GLINT_OBJECT_DIFFERENCE, COLLECTION },
 };
 
+static lua_Integer count(const void *object)
+{
+    return glint_shape_get(object)->kind < GLINT_SHAPE_GROUP ? -1 : (lua_Integer)glint_group_count(object);
+}
+
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
 
 GLINTL_FUNCTIONS(shape);
@@ -119,6 +125,8 @@ static const glintL_class CLASS = {
     .assigned = assigned,
     .begin = begin,
     .made = made,
+    .count = count,
+    .push_at = glintL_group_push_at,
 };
 
 void glintL_open_shape(lua_State *L)

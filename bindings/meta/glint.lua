@@ -70,6 +70,7 @@ function vector:reflect(n) end
 ---@alias glint.color glint.vector|number[]|number|string
 
 ---@class glint.object
+---@field kind string  "sphere", "point_light", "label", "material" ...: the function that makes such objects; read-only
 local any_object = {}
 
 --- Releases the object now instead of when it is collected. Shapes and scenes that use it keep it.
@@ -194,9 +195,12 @@ function glint.camera(fields) end
 
 ---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group|glint.union|glint.intersection|glint.difference
 
---- An affine map, immutable. `a * b` applies b first, then a. Maps are equal when all their numbers are.
+--- An affine map, immutable. `a * b` applies b first, then a; `a * {x, y, z}` is the image of a point. Maps are equal
+--- when all their numbers are. `a[1]` to `a[12]` are the numbers that glint.matrix takes.
 ---@class glint.transform
 ---@operator mul(glint.transform): glint.transform
+---@operator mul(glint.vec3): glint.vector
+---@field [integer] number  1 .. 12, row by row
 
 --- translate(x, y, z) or translate {x, y, z}.
 ---@param x number|glint.vec3
@@ -354,7 +358,8 @@ function glint.torus(fields) end
 --- to it apply everywhere. Groups nest at most 64 deep. A group cannot contain itself.
 ---@class glint.group: glint.object
 ---@fields group
----@field count integer  number of shapes and groups in the group; read-only
+---@field count integer  number of shapes and groups in the group, as #group; read-only
+---@field [integer] glint.shape  the shapes and groups, from 1
 local group = {}
 
 --- Adds a shape or group and returns it.
@@ -365,6 +370,10 @@ function group:add(shape) end
 ---@param shape glint.shape
 function group:remove(shape) end
 
+--- Returns a new list of the shapes and groups in the group.
+---@return glint.shape[]
+function group:objects() end
+
 ---@param fields glint.group_fields
 ---@return glint.group
 function glint.group(fields) end
@@ -374,6 +383,7 @@ function glint.group(fields) end
 
 ---@class glint.combined: glint.combined_fields, glint.object
 ---@field count integer  number of the given parts; read-only
+---@field [integer] glint.shape  the parts, from 1
 local combined = {}
 
 --- Adds a part and returns it.
@@ -383,6 +393,10 @@ function combined:add(shape) end
 
 ---@param shape glint.shape
 function combined:remove(shape) end
+
+--- Returns a new list of the parts.
+---@return glint.shape[]
+function combined:objects() end
 
 --- Everything inside any of its 1 .. 64 parts, as one solid (a torus counts twice, a closed mesh four times). A plane
 --- is the half-space behind it; a group is everything inside its shapes. A part shows only on the boundary of the
@@ -544,12 +558,7 @@ function glint.arc(fields) end
 ---@field points glint.vec3[]  2 .. 128 points in the world, joined by straight segments
 
 --- Straight segments between points of the world, drawn over the picture, with a label next to the middle point.
----@class glint.polyline: glint.polyline_fields
-local polyline = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function polyline:close() end
-
+---@class glint.polyline: glint.polyline_fields, glint.object
 ---@param fields glint.polyline_fields
 ---@return glint.polyline
 function glint.polyline(fields) end
@@ -563,13 +572,8 @@ function glint.polyline(fields) end
 
 --- The polar diagram of a highlight, in the plane of normal and light. Its length in a direction is the specular light
 --- of material:evaluate, the mean of red, green and blue. Computed before each frame from the material as it is then.
----@class glint.lobe: glint.lobe_fields
+---@class glint.lobe: glint.lobe_fields, glint.object
 ---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
-local lobe = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function lobe:close() end
-
 ---@param fields glint.lobe_fields
 ---@return glint.lobe
 function glint.lobe(fields) end
@@ -583,13 +587,8 @@ function glint.lobe(fields) end
 
 --- The path of a ray, mirrored and refracted, with a dot at each hit. Rays with less than a hundredth of the light are
 --- left out, and there are at most 64 segments. Computed before each frame from the scene as it is then.
----@class glint.path: glint.path_fields
+---@class glint.path: glint.path_fields, glint.object
 ---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
-local ray_path = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function ray_path:close() end
-
 ---@param fields glint.path_fields
 ---@return glint.path
 function glint.path(fields) end
@@ -601,13 +600,8 @@ function glint.path(fields) end
 
 --- The view of a camera: edges from its eye to the corners of its picture, and the sides of the picture. Computed before
 --- each frame from the camera as it is then.
----@class glint.frustum: glint.frustum_fields
+---@class glint.frustum: glint.frustum_fields, glint.object
 ---@field strokes glint.vector[][]  the points computed for the last frame, a list for each stroke; read-only
-local frustum = {}
-
---- Releases the object now instead of when it is collected. A scene that contains it can still use it.
-function frustum:close() end
-
 ---@param fields glint.frustum_fields
 ---@return glint.frustum
 function glint.frustum(fields) end
@@ -638,7 +632,8 @@ function glint.ambient_occlusion(fields) end
 ---@class glint.scene_table: glint.scene_fields
 ---@field [integer] glint.shape|glint.light|glint.overlay|glint.ambient_occlusion  the objects, numbered in this order, without gaps
 
----@class glint.scene: glint.scene_fields
+---@class glint.scene: glint.scene_fields, glint.object
+---@field [integer] glint.shape|glint.light|glint.overlay  the objects in the order of objects(), from 1
 local scene = {}
 
 --- Adds a shape, light or overlay, numbered after the others of its kind. Raises if it is in the scene already.
@@ -664,7 +659,8 @@ function scene:remove(object) end
 ---@return glint.hit? hit  nil when nothing is hit
 function scene:cast(origin, direction) end
 
---- Returns the shapes, the lights, then the overlays, each in the order of definition. `#scene` is their number.
+--- Returns a new list: the shapes, the lights, then the overlays, each in the order of definition. `#scene` is their
+--- number, `scene[i]` one of them.
 ---@return (glint.shape|glint.light|glint.overlay)[]
 function scene:objects() end
 
@@ -674,9 +670,6 @@ function scene:objects() end
 ---@return glint.image? image
 ---@return "skipped"? reason
 function scene:render(options) end
-
---- Frees the scene at once, and everything that only the scene retains.
-function scene:close() end
 
 ---@param fields glint.scene_table
 ---@return glint.scene
@@ -738,7 +731,7 @@ function glint.scene(fields) end
 ---@field dpi? number  pixels per inch of a .png, .svg or .pdf, 0 .. 1e6. Default 0: not stored
 ---@field pass? glint.pass  Default "beauty"
 
----@class glint.image
+---@class glint.image: glint.object
 ---@field width integer  pixels; read-only
 ---@field height integer  pixels; read-only
 ---@field passes glint.pass[]  the passes that can be read; read-only
@@ -767,9 +760,6 @@ function image:bytes(pass) end
 ---@return true? done
 ---@return string? message
 function image:save(path, options) end
-
---- Frees the picture's memory now instead of when it is collected.
-function image:close() end
 
 -- ---- Jobs ----
 

@@ -51,7 +51,7 @@ static int unknown_field(lua_State *L, const glintL_class *class, const glintL_v
         near = glintL_nearer(name, near, f->name);
     for (const luaL_Reg *f = class->methods; f && f->name; f++)
         near = glintL_nearer(name, near, f->name);
-    return glintL_no_such_field(L, variant->name, name, glintL_nearer(name, near, "close"));
+    return glintL_no_such_field(L, variant->name, name, glintL_nearer(name, glintL_nearer(name, near, "kind"), "close"));
 }
 
 // Makes a new userdata if the object has none any more, before reading the object's pointer again: making it may run a
@@ -114,6 +114,8 @@ static int read_member(lua_State *L)
         }
     }
     const void *object = glintL_check_object(L, 1, class->type);
+    if (lua_isinteger(L, 2) && class->count && class->count(object) >= 0)
+        return glintL_push_numbered(L, class, object, lua_tointeger(L, 2));
     const glintL_variant *variant = class->variant(object);
     const char *name = field_name(L, variant);
     const glintL_field *field = glintL_find_field(glintL_fields_of(variant), name);
@@ -132,6 +134,8 @@ static int read_member(lua_State *L)
     } else if (part >= 0) {
         push_value(L, class, glintL_find_field(glintL_fields_of(variant), variant->place), object);
         lua_pushnumber(L, glintL_to_vector(L, -1)[part]);
+    } else if (strcmp(name, "kind") == 0) {
+        lua_pushstring(L, variant->name);
     } else if ((function = find_function(variant->getters, name)) != NULL) {
         lua_settop(L, 1);
         return function->func(L);
@@ -158,7 +162,7 @@ static const glintL_field *writable_field(lua_State *L, const glintL_class *clas
     const glintL_field *field = glintL_find_field(glintL_fields_of(variant), name);
     if (field)
         return field;
-    if (find_function(variant->getters, name))
+    if (find_function(variant->getters, name) || strcmp(name, "kind") == 0)
         glintL_error(L, "%s.%s: this field is read-only", variant->name, name);
     if (strcmp(name, "close") == 0 || find_function(class->methods, name) || find_function(variant->methods, name))
         glintL_error(L, "%s.%s: a method cannot be assigned", variant->name, name);
@@ -308,9 +312,12 @@ void glintL_open_class(lua_State *L, const glintL_class *class)
         { "__newindex", write_member },
         { "__eq", same_object },
         { "__tostring", to_string },
+        { "__pairs", glintL_pairs },
         { NULL, NULL },
     };
     luaL_newmetatable(L, class->type);
+    if (class->count)
+        glintL_set_function(L, "__len", glintL_count_objects);
     lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_setfield(L, -2, "class");
     glintL_set_flag(L, "__metatable", false);
@@ -355,11 +362,13 @@ void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *class)
 {
     static const luaL_Reg parts[] = { { "x", NULL }, { "y", NULL }, { "z", NULL }, { NULL, NULL } };
+    static const luaL_Reg kind[] = { { "kind", NULL }, { NULL, NULL } };
     static const luaL_Reg close[] = { { "close", close_object }, { NULL, NULL } };
     glintL_list_variant(L, variant, class->methods);
     glintL_push_table(L, &LISTED);
     lua_getfield(L, -1, variant->name);
     list_functions(L, variant->place ? parts : NULL, "field");
+    list_functions(L, kind, "field");
     list_functions(L, variant->methods, "method");
     list_functions(L, close, "method");
     lua_pop(L, 2);

@@ -290,6 +290,10 @@ typedef struct glintL_class {
     /// Called when the object has accepted `field`: gives warnings. NULL: nothing to do.
     void (*accepted)(lua_State *L, const glintL_field *field, const void *desc);
     const luaL_Reg *methods; ///< in addition to close; NULL: none
+    /// Returns the number of objects that the object consists of, and pushes the one with this index; `count` returns -1
+    /// for an object that is not a list. NULL: none is.
+    lua_Integer (*count)(const void *object);
+    void (*push_at)(lua_State *L, const void *object, size_t index);
     // For glintL_open_objects:
     void (*begin)(int variant, void *desc); ///< writes the defaults of variant number `variant`
     glint_status (*create)(const void *desc, void **out, glint_error *error);
@@ -297,6 +301,13 @@ typedef struct glintL_class {
     void (*given)(lua_State *L, const glintL_variant *variant, const void *desc);
     void (*made)(lua_State *L, const void *desc); ///< called when the userdata, at 2, has its object. May be NULL
 } glintL_class;
+
+/// Pushes object number `number` of a list, or nil beyond its end.
+int glintL_push_numbered(lua_State *L, const glintL_class *class, const void *object, lua_Integer number);
+/// The getter `count` and the method `objects` of scenes and groups, and __pairs of every object.
+int glintL_count_objects(lua_State *L);
+int glintL_list_objects(lua_State *L);
+int glintL_pairs(lua_State *L);
 
 /// Defines get, set, retain, release and create for a class whose objects have a description glint_NAME_desc.
 #define GLINTL_FUNCTIONS(name) \
@@ -387,7 +398,7 @@ int glintL_new_sphere_mesh(lua_State *L);
 /// group.c: methods, the getter `count`, and the children in the list at `list`.
 int glintL_group_add(lua_State *L);
 int glintL_group_remove(lua_State *L);
-int glintL_group_count(lua_State *L);
+void glintL_group_push_at(lua_State *L, const void *group, size_t index);
 void glintL_group_fill(lua_State *L, int list, int index, const char *name);
 
 /// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.

@@ -23,9 +23,19 @@ static const glint_transform *check_operand(lua_State *L, int index)
     return t;
 }
 
+// transform * transform is the product, transform * {x, y, z} the image of a point.
 static int multiply(lua_State *L)
 {
-    const glint_transform product = glint_transform_product(check_operand(L, 1), check_operand(L, 2));
+    const glint_transform *t = check_operand(L, 1);
+    if (lua_istable(L, 2) || glintL_to_vector(L, 2)) {
+        double p[3], image[3];
+        glintL_read_vector(L, 2, "transform: point", p);
+        for (int r = 0; r < 3; r++)
+            image[r] = t->m[r][0] * p[0] + t->m[r][1] * p[1] + t->m[r][2] * p[2] + t->m[r][3];
+        glintL_push_vector(L, image);
+        return 1;
+    }
+    const glint_transform product = glint_transform_product(t, check_operand(L, 2));
     glintL_push_transform(L, &product);
     return 1;
 }
@@ -55,11 +65,26 @@ static int to_string(lua_State *L)
     return 1;
 }
 
+// The numbers of the map, row by row: t[1] to t[12].
 static int read_field(lua_State *L)
 {
+    if (lua_isinteger(L, 2)) {
+        const lua_Integer i = lua_tointeger(L, 2);
+        if (i < 1 || i > 12)
+            lua_pushnil(L);
+        else
+            lua_pushnumber(L, check_operand(L, 1)->m[(i - 1) / 4][(i - 1) % 4]);
+        return 1;
+    }
     if (lua_type(L, 2) != LUA_TSTRING)
         return glintL_bad_key(L, "transform", 2);
     return glintL_no_such_field(L, "transform", lua_tostring(L, 2), NULL);
+}
+
+static int count_numbers(lua_State *L)
+{
+    lua_pushinteger(L, 12);
+    return 1;
 }
 
 static int write_field(lua_State *L)
@@ -164,7 +189,7 @@ void glintL_open_transform(lua_State *L)
 {
     static const luaL_Reg meta[] = {
         { "__mul", multiply },         { "__eq", equal }, { "__tostring", to_string }, { "__index", read_field },
-        { "__newindex", write_field }, { NULL, NULL },
+        { "__newindex", write_field }, { "__len", count_numbers }, { NULL, NULL },
     };
     static const luaL_Reg constructors[] = {
         { "translate", translate }, { "scale", scale }, { "rotate", rotate }, { "matrix", matrix }, { NULL, NULL },

@@ -178,6 +178,69 @@ function tests.spheres()
   wrong(".centre: no such field", { data = rows, centre = 1 })
 end
 
+-- The numbers of a transform, and the images of points by paper.
+function tests.transform_numbers()
+  local turn = glint.translate(1, 2, 3) * glint.rotate("y", 90) * glint.scale(2)
+  local p = turn * { 1, 10, 100 }
+  check(is(p, 201, 22, 1), "scaled, turned (x to -z, z to x), moved: %s", p)
+  check(is(turn * glint.sphere(SPHERE).center, (turn * { SPHERE.center[1], SPHERE.center[2], SPHERE.center[3] }):unpack()), "a vector")
+  local numbers = {}
+  for i, x in ipairs(turn) do numbers[i] = x end
+  check(#turn == 12 and #numbers == 12 and numbers[4] == 1 and numbers[3] == 2 and numbers[9] == -2, "its numbers")
+  check(glint.matrix(numbers) == turn and turn[0] == nil and turn[13] == nil, "they make it again")
+  raises("transform: point[3]: number expected, got nil", function() return turn * { 1, 2 } end)
+  raises("transform: transform expected, got 3", function() return turn * 3 end)
+  raises("transform.1: a transform cannot be changed; assign a new transform to the object's field", function() turn[1] = 3 end)
+end
+
+-- Every list is read by number, by ipairs and by objects(), and every object tells its kind.
+function tests.walking()
+  local lamp, label = glint.point_light(LAMP), glint.label { text = "a" }
+  local ball, box = glint.sphere(SPHERE), glint.box { min = { 0, 0, 0 }, max = { 1, 1, 1 } }
+  local group = glint.group { ball, glint.union { ball, box } }
+  local scene = glint.scene { lamp, label, ball, group, ambient = 0.25, camera = glint.camera(CAMERA) }
+  local function walk(list, as)
+    local words = {}
+    for i, object in ipairs(list) do
+      words[i] = object.kind
+      check(rawequal(object, list[i]) and rawequal(object, list:objects()[i]), "%s %d", as, i)
+    end
+    check(#list == #words and #list:objects() == #words and list[0] == nil and list[#words + 1] == nil and list[-1] == nil,
+      "ends of %s", as)
+    return table.concat(words, " ")
+  end
+  check(walk(scene, "scene") == "sphere group point_light label", "kinds of a scene")
+  check(walk(group, "group") == "sphere union" and walk(group[2], "union") == "sphere box", "kinds of a group")
+  check(rawequal(scene[1], ball) and rawequal(scene[2][1], ball), "a shape in two places is one object")
+  check(scene.kind == "scene" and scene.camera.kind == "camera" and glint.material {}.kind == "material", "other kinds")
+  check(glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 4 }.kind == "mesh", "a sphere mesh is a mesh")
+  local names, count = {}, 0
+  for name, value in pairs(scene) do
+    count = count + 1
+    if count <= 4 then check(name == count and rawequal(value, scene[count]), "pairs: object %d", count) end
+    names[name] = value
+  end
+  check(is(names.ambient, 0.25, 0.25, 0.25) and rawequal(names.camera, scene.camera) and names.indirect == nil, "pairs: fields")
+  names = {}
+  for name, value in pairs(ball) do names[#names + 1], names[name] = name, value end
+  check(names[1] == "center" and names.radius == ball.radius and names.kind == nil and names.x == nil, "pairs of a sphere")
+  local copy = { center = names.center, radius = names.radius, material = names.material, transform = names.transform }
+  check(is(glint.sphere(copy).center, ball.center.x, ball.center.y, ball.center.z), "its fields make a sphere again")
+  local list = scene:objects()
+  scene:remove(ball)
+  check(#list == 4 and #scene == 3 and rawequal(scene[1], group), "a list stays as it is")
+  raises("sphere: name of a field expected, got 1", function() return ball[1] end)
+  raises("sphere.kind: this field is read-only", function() ball.kind = "box" end)
+  raises("sphere.objects: no such field", function() return ball:objects() end)
+  raises("scene or group expected, got sphere", function() return scene.objects(ball) end)
+  raises("scene or group expected, got 3", function() return scene.objects(3) end)
+  raises("scene: name of a field expected, got 3", function() scene[3] = ball end)
+  local step = pairs(ball)
+  raises("object expected, got 1", function() step(1) end)
+  scene:close()
+  raises("scene is closed", function() return scene[1] end)
+end
+
 function tests.scene()
   local red = glint.material {}
   local camera, lamp = glint.camera(CAMERA), glint.point_light(LAMP)
