@@ -7,18 +7,13 @@
 #include <string.h>
 
 #ifdef GLINT_HAVE_OPENEXR
-#include <openexr.h>
+#include "engine/file/exr_chunks.h"
 
 typedef struct exr_input {
     exr_context_t context;
     glint_image *image;
     bool half; ///< some light pass is stored as half
 } exr_input;
-
-static void drop_message(exr_const_context_t context, exr_result_t code, const char *message)
-{
-    (void)context, (void)code, (void)message;
-}
 
 // ---- Channels -----------------------------------------------------------------------------------------------------
 
@@ -99,44 +94,6 @@ static glint_status make_image(exr_input *file, const exr_attr_chlist_t *channel
 
 // ---- Pixels -------------------------------------------------------------------------------------------------------
 
-/// Sets the decoder's output to the rows of a chunk.
-static void aim(const exr_input *file, exr_decode_pipeline_t *pipe, int y)
-{
-    const size_t width = (size_t)file->image->width;
-    for (int i = 0; i < pipe->channel_count; i++) {
-        exr_coding_channel_info_t *info = &pipe->channels[i];
-        float *plane = plane_of(file->image, info->channel_name);
-        info->user_data_type = EXR_PIXEL_FLOAT;
-        info->user_bytes_per_element = sizeof(float);
-        info->user_pixel_stride = sizeof(float);
-        info->user_line_stride = (int32_t)(width * sizeof(float));
-        info->decode_to_ptr = plane ? (uint8_t *)(plane + (size_t)y * width) : NULL;
-    }
-}
-
-static exr_result_t read_rows(exr_input *file, int top)
-{
-    exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
-    int32_t lines = 1;
-    exr_result_t result = exr_get_scanlines_per_chunk(file->context, 0, &lines);
-    for (int y = 0; y < file->image->height && !result; y += lines) {
-        exr_chunk_info_t chunk;
-        result = exr_read_scanline_chunk_info(file->context, 0, top + y, &chunk);
-        if (!result)
-            result = y ? exr_decoding_update(file->context, 0, &chunk, &pipe)
-                       : exr_decoding_initialize(file->context, 0, &chunk, &pipe);
-        if (result)
-            break;
-        aim(file, &pipe, y);
-        if (y == 0)
-            result = exr_decoding_choose_default_routines(file->context, 0, &pipe);
-        if (!result)
-            result = exr_decoding_run(file->context, 0, &pipe);
-    }
-    exr_decoding_destroy(file->context, &pipe);
-    return result;
-}
-
 /// Returns whether the picture has a transparent background: glint:options contains alpha=true.
 static bool has_cover(exr_const_context_t context)
 {
@@ -150,21 +107,20 @@ static bool has_cover(exr_const_context_t context)
 static glint_status read_part(exr_input *file, glint_error *error)
 {
     const exr_attr_chlist_t *channels = NULL;
-    exr_attr_box2i_t window;
-    exr_storage_t storage;
-    if (exr_get_storage(file->context, 0, &storage) || exr_get_channels(file->context, 0, &channels) ||
-        exr_get_data_window(file->context, 0, &window))
-        return glint_fail(error, GLINT_ERR_FORMAT, "a whole OpenEXR file expected");
-    if (storage != EXR_STORAGE_SCANLINE)
-        return glint_fail(error, GLINT_ERR_FORMAT, "an OpenEXR file of scan lines expected, got tiles");
-    const int64_t width = (int64_t)window.max.x - window.min.x + 1, height = (int64_t)window.max.y - window.min.y + 1;
-    if (width < 1 || height < 1 || width > GLINT_SIDE_MAX || height > GLINT_SIDE_MAX)
-        return glint_fail(error, GLINT_ERR_FORMAT, "sides of 1 .. %d pixels expected", GLINT_SIDE_MAX);
-    glint_status status = make_image(file, channels, (int)width, (int)height, error);
+    int width = 0, height = 0;
+    glint_status status = glint_exr_open(file->context, (size_t)GLINT_SIDE_MAX * GLINT_SIDE_MAX, &channels, &width, &height, error);
+    if (!status)
+        status = make_image(file, channels, width, height, error);
+    float **planes = status ? NULL : calloc((size_t)channels->num_channels, sizeof *planes);
+    if (!status && !planes)
+        status = glint_fail_nomem(error);
+    for (int i = 0; !status && i < channels->num_channels; i++)
+        planes[i] = plane_of(file->image, channels->entries[i].name.str);
+    if (!status)
+        status = glint_exr_read(file->context, &(glint_exr_planes){ planes, 1 }, error);
+    free(planes);
     if (status)
         return status;
-    if (read_rows(file, window.min.y))
-        return glint_fail(error, GLINT_ERR_FORMAT, "a whole OpenEXR file expected");
     file->image->alpha = file->image->plane[GLINT_PASS_ALPHA][0] && has_cover(file->context);
     file->image->channels = file->image->alpha ? 4 : 3;
     return glint_image_split_rest(file->image, file->half, error);
@@ -174,10 +130,9 @@ glint_status glint_lights_read(const char *path, glint_image **out, glint_error 
 {
     GLINT_REFUSE_NULL(path, error);
     GLINT_REFUSE_NULL(out, error);
-    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_context_initializer_t how = glint_exr_reader();
     exr_input file = { .image = NULL };
     glint_error inner;
-    how.error_handler_fn = drop_message;
     const exr_result_t opened = exr_start_read(&file.context, path, &how);
     glint_status status = opened == EXR_ERR_FILE_ACCESS     ? glint_fail(&inner, GLINT_ERR_IO, "it cannot be read")
                           : opened == EXR_ERR_OUT_OF_MEMORY ? glint_fail_nomem(&inner)

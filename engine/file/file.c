@@ -42,7 +42,7 @@ static size_t picture_bound(const glint_bytes *head)
     const uint64_t png = glint_png_raw_bytes(head->data, head->size);
     if (pfm)
         return (size_t)pfm + SLACK_BYTES;
-    if (glint_is_hdr(head->data, head->size) || glint_is_exr(head->data, head->size))
+    if (glint_is_hdr(head->data, head->size) || glint_is_exr(head->data, head->size) || glint_is_pfm(head->data, head->size))
         return FLOATS_LIMIT;
     if (!png)
         return glint_is_jpeg(head->data, head->size) ? JPEG_LIMIT : 0;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE_BYTES 256
+#define LINE_BYTES 256 // of a line of the header, those that are looked at
 
 /// A picture while it is read. Lines are rows, or columns in some orientations.
 typedef struct hdr_input {
@@ -22,13 +22,14 @@ bool glint_is_hdr(const uint8_t *data, size_t size) { return size >= 2 && data[0
 
 // ---- Header -------------------------------------------------------------------------------------------------------
 
-/// Reads a line of the header without its end. False: the file ends, or the line is too long.
+/// Reads a line of the header without its end, or the beginning of a long one. False: the file ends.
 static bool read_line(hdr_input *in, char line[LINE_BYTES])
 {
     size_t length = 0;
-    while (in->at < in->end && *in->at != '\n' && length + 1 < LINE_BYTES)
-        line[length++] = (char)*in->at++;
-    if (in->at == in->end || *in->at != '\n')
+    for (; in->at < in->end && *in->at != '\n'; in->at++)
+        if (length + 1 < LINE_BYTES)
+            line[length++] = (char)*in->at;
+    if (in->at == in->end)
         return false;
     in->at++;
     if (length > 0 && line[length - 1] == '\r')

@@ -47,14 +47,22 @@ bool glint_pfm_encode(int width, int height, int channels, float *const plane[],
 
 static bool is_space(uint8_t c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
+/// Returns the position of the next word of the header. A comment runs from # to the end of its line.
+static size_t skip_spaces(const uint8_t *data, size_t size, size_t i)
+{
+    for (bool comment = false; i < size && (comment || data[i] == '#' || is_space(data[i])); i++)
+        comment = (comment || data[i] == '#') && data[i] != '\n';
+    return i;
+}
+
 /// Splits the header into words. *at: the first byte of the values, after the one space that follows the last word.
 static bool split_header(const uint8_t *data, size_t size, char word[HEADER_FIELDS][32], size_t *at)
 {
     size_t i = 0;
     for (int field = 0; field < HEADER_FIELDS; field++) {
         size_t length = 0;
-        while (field && i < size && is_space(data[i]))
-            i++;
+        if (field)
+            i = skip_spaces(data, size, i);
         while (i < size && !is_space(data[i]) && length < 31)
             word[field][length++] = (char)data[i++];
         word[field][length] = '\0';
@@ -115,7 +123,7 @@ glint_status glint_pfm_decode(const uint8_t *data, size_t size, glint_pfm *out, 
     bool little = true;
     size_t at = 0;
     if (!parse_header(data, size, &pfm, &little, &at))
-        return glint_fail(error, GLINT_ERR_FORMAT, "not a PFM: bad header");
+        return glint_fail(error, GLINT_ERR_FORMAT, "not a PFM: PF or Pf, width, height and scale expected");
     size_t row = (size_t)pfm.width * (size_t)pfm.channels, count = row * (size_t)pfm.height;
     if ((size - at) / 4 != count || (size - at) % 4)
         return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PFM: %zu bytes of values expected, got %zu", count * 4,

@@ -20,6 +20,12 @@ typedef struct glint_pfm {
     float *values; ///< interleaved, top row first; the owner calls free
 } glint_pfm;
 
+/// Returns whether the bytes begin like a PFM, of a kind that is read or not.
+static inline bool glint_is_pfm(const uint8_t *data, size_t size)
+{
+    return size >= 3 && data[0] == 'P' && (data[1] == 'F' || data[1] == 'f') && (data[2] <= ' ' || data[2] == '4');
+}
+
 /// Returns the size of a whole PFM with this beginning; 0: not a PFM.
 uint64_t glint_pfm_bytes(const uint8_t *head, size_t size);
 /// Decodes either byte order and ignores the magnitude of the scale. GLINT_ERR_FORMAT when the bytes are not a whole

@@ -151,7 +151,8 @@ static const struct {
     const char *begin, *kind;
 } OTHERS[] = { { 0, "GIF8", "GIF" },       { 0, "BM", "BMP" },          { 0, "II*", "TIFF" },     { 0, "MM", "TIFF" },
                { 8, "WEBP", "WebP" },      { 0, "DDS ", "DDS" },        { 0, "8BPS", "Photoshop" },
-               { 4, "jP  ", "JPEG 2000" },  { 4, "ftypavif", "AVIF" },  { 4, "ftyphei", "HEIF" }, { 0, "<", "SVG or another XML" }, { 0, "qoif", "QOI" } };
+               { 4, "jP  ", "JPEG 2000" },  { 4, "ftypavif", "AVIF" },  { 4, "ftyphei", "HEIF" }, { 0, "<", "SVG or another XML" }, { 0, "qoif", "QOI" },
+               { 0, "P3", "PPM" },         { 0, "P5", "PGM" },          { 0, "P6", "PPM" } };
 
 /// Refuses a picture of another format, and names the format.
 static glint_status refuse_other(const glint_bytes *bytes, glint_error *error)
@@ -187,7 +188,7 @@ static glint_status decode_floats(const glint_bytes *bytes, glint_pfm *out, bool
         status = glint_hdr_decode(bytes->data, bytes->size, TEXELS_MAX, out, error);
     else if (glint_is_exr(bytes->data, bytes->size))
         status = glint_exr_decode(bytes, TEXELS_MAX, out, error);
-    else if (glint_pfm_bytes(bytes->data, bytes->size))
+    else if (glint_is_pfm(bytes->data, bytes->size))
         status = glint_pfm_decode(bytes->data, bytes->size, out, error);
     else
         *known = false;
