@@ -132,7 +132,7 @@ static void release(glint_mesh_reader *r)
     glint_mesh_array *const arrays[] = { &r->vertices,  &r->normals,          &r->uv,
                                          &r->corners,   &r->corner_normals,   &r->corner_uv,
                                          &r->sizes,     &r->material_index,   &r->colors,
-                                         &r->materials, &r->numbers_of_colors };
+                                         &r->materials, &r->numbers_of_colors, &r->groups };
     for (size_t i = 0; i < r->materials.count; i++)
         glint_material_release(((glint_material **)r->materials.items)[i]);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -254,7 +254,8 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
     r.uv.size = 2 * sizeof(double);
     r.colors.size = 3;
     r.materials.size = sizeof(glint_material *);
-    r.corners.size = r.corner_normals.size = r.corner_uv.size = r.sizes.size = r.material_index.size = sizeof(uint32_t);
+    r.corners.size = r.corner_normals.size = r.corner_uv.size = r.sizes.size = r.material_index.size = r.groups.size =
+        sizeof(uint32_t);
     glint_status status = desc->has_shading ? glint_check_shading(desc->shading, error) : GLINT_OK;
     if (status)
         return status;

@@ -102,6 +102,7 @@ typedef enum glint_mesh_note_kind {
     GLINT_MESH_NOTE_UNKNOWN, ///< an unknown statement
     GLINT_MESH_NOTE_COLOR, ///< colours that are ignored
     GLINT_MESH_NOTE_PICTURE, ///< a picture that is ignored
+    GLINT_MESH_NOTE_GROUP, ///< a smoothing group that cannot be read
     GLINT_MESH_NOTE_COUNT
 } glint_mesh_note_kind;
 
@@ -132,6 +133,8 @@ typedef struct glint_mesh_reader {
     glint_mesh_array materials; ///< the materials of `colors`: glint_material *, owned; empty: `desc` has the materials
     glint_mesh_set vertex_set; ///< .stl: finds vertices by their position
     bool has_normals;
+    uint32_t group; ///< .obj: smoothing group of the next faces; 0: none
+    glint_mesh_array groups; ///< .obj: smoothing group of each face
     glint_mesh_note notes[GLINT_MESH_NOTE_COUNT];
     glint_error *error;
 } glint_mesh_reader;
@@ -146,6 +149,11 @@ glint_status glint_mesh_drop_normals(glint_mesh_reader *reader);
 /// Warns that something is ignored; the message starts with the file's name.
 void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/// Reads the statement s of .obj files, after its word: a smoothing group, or off.
+glint_status glint_mesh_read_group(glint_mesh_reader *reader, const char *at);
+/// Adds the normals of faces in smoothing groups, after all corners have been read.
+glint_status glint_mesh_smooth(glint_mesh_reader *reader);
 
 glint_status glint_mesh_read_obj(glint_mesh_reader *reader);
 glint_status glint_mesh_read_stl(glint_mesh_reader *reader);

@@ -188,6 +188,8 @@ static glint_status read_face(reader *r, const char *at)
         return GLINT_OK;
     }
     glint_status status = append(r, &r->sizes, &size);
+    if (!status)
+        status = append(r, &r->groups, &r->group);
     if (!status && r->library)
         status = glint_mesh_library_face(r->library, &material, r->error);
     return status || !r->library ? status : append(r, &r->material_index, &material);
@@ -229,7 +231,7 @@ static bool is_among(const char *line, const char *const *words)
 /// Skips a statement that does not concern meshes.
 static void pass_over(reader *r, const char *at)
 {
-    static const char *const silent[] = { "vp",         "g",         "o",      "s",      "l",        "p",
+    static const char *const silent[] = { "vp",         "g",         "o",      "l",        "p",
                                           "bevel",      "lod",       "mg",     "usemap", "c_interp", "d_interp",
                                           "shadow_obj", "trace_obj", "maplib", NULL };
     static const char *const free_form[] = { "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf",  "parm",
@@ -263,6 +265,8 @@ static glint_status read_statement(reader *r)
         return read_pair(r, at + 2);
     if (glint_mesh_is_word(at, "f") || glint_mesh_is_word(at, "fo"))
         return read_face(r, at + (at[1] == 'o' ? 2 : 1));
+    if (glint_mesh_is_word(at, "s"))
+        return glint_mesh_read_group(r, at + 1);
     glint_status status = read_material(r, at, &known);
     if (!known)
         pass_over(r, at);
@@ -309,7 +313,9 @@ static glint_status check_corners(reader *r)
     r->has_normals = r->normals.count && names_any(&r->corner_normals);
     if (!r->uv.count || !names_any(&r->corner_uv))
         r->uv.count = r->corner_uv.count = 0;
-    return !status && r->has_normals && r->notes[GLINT_MESH_NOTE_NORMAL].count ? glint_mesh_drop_normals(r) : status;
+    if (!status && r->has_normals && r->notes[GLINT_MESH_NOTE_NORMAL].count)
+        status = glint_mesh_drop_normals(r);
+    return status ? status : glint_mesh_smooth(r);
 }
 
 /// Gives faces the colours of their vertices, unless they have materials.

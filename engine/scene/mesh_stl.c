@@ -34,6 +34,16 @@ static float float_at(const unsigned char *bytes)
     return number;
 }
 
+/// Reads the colour of a triangle as VisCAM writes it: 5 bits each of red, green and blue, with bit 15 set.
+static glint_status read_color(glint_mesh_reader *r, uint32_t bits)
+{
+    double v[3];
+    for (uint32_t c = 0; c < 3; c++)
+        v[c] = bits & 0x8000 ? (bits >> (10 - 5 * c) & 31) / 31.0 : GLINT_MESH_NO_COLOR;
+    r->colors_of_faces = r->colors_of_faces || (bits & 0x8000);
+    return glint_mesh_append(&r->numbers_of_colors, v, r->error);
+}
+
 static glint_status read_binary(glint_mesh_reader *r, uint32_t count)
 {
     unsigned char record[TRIANGLE_BYTES];
@@ -46,8 +56,26 @@ static glint_status read_binary(glint_mesh_reader *r, uint32_t count)
         for (int k = 0; k < 9; k++)
             corners[k / 3][k % 3] = (double)float_at(record + 12 + 4 * k);
         glint_status status = add_triangle(r, corners);
+        if (!status)
+            status = read_color(r, record[48] | (uint32_t)record[49] << 8);
         if (status)
             return status;
+    }
+    return GLINT_OK;
+}
+
+/// Gives faces their colours, unless the script gives materials or the colours have the form of Magics.
+static glint_status color(glint_mesh_reader *r, const char *head)
+{
+    bool magics = false;
+    for (int i = 0; i + 6 <= HEAD_BYTES - 4; i++)
+        magics = magics || memcmp(head + i, "COLOR=", 6) == 0;
+    if (magics)
+        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
+                             "its colours are ignored: glint reads those of VisCAM's form, not of Magics'");
+    if (!magics && r->colors_of_faces && !r->desc->material && !r->desc->material_count) {
+        glint_status status = glint_mesh_take_colors(r, r->sizes.count);
+        return status ? status : glint_mesh_color_faces(r);
     }
     return GLINT_OK;
 }
@@ -187,9 +215,8 @@ glint_status glint_mesh_read_stl(glint_mesh_reader *r)
         glint_mesh_note_that(r, GLINT_MESH_NOTE_UNKNOWN, 0,
                              "the data after the last triangle is ignored: bytes %llu .. %llu",
                              (unsigned long long)needed, (unsigned long long)t->size - 1);
-    if (!status && !text && strstr(bytes, "COLOR="))
-        glint_mesh_note_that(r, GLINT_MESH_NOTE_COLOR, 0,
-                             "its colours are ignored: glint does not read colours of .stl files");
+    if (!status && !text)
+        status = color(r, bytes);
     if (!status && r->sizes.count == 0)
         status = glint_fail(r->error, GLINT_ERR_FORMAT, "%s: triangles expected, got none", t->path);
     return status;

@@ -238,7 +238,10 @@ function tests.stl()
   check(load("facet.stl", table.concat(one), "\0\0").count == 1, "a head that has the words of a text")
   one[1] = "COLOR=\255\0\0\255" .. ("\0"):rep(70)
   check(load("color.stl", table.concat(one)).count == 1, "colours")
-  warns("its colours are ignored: glint does not read colours of .stl files", folder .. "/color.stl")
+  warns("its colours are ignored: glint reads those of VisCAM's form, not of Magics'", folder .. "/color.stl")
+  one[1] = "made by\0COLOR=\255\0\0\255" .. ("\0"):rep(62)
+  check(load("color.stl", table.concat(one)).count == 1, "colours after a zero")
+  warns("its colours are ignored: glint reads those of VisCAM's form, not of Magics'", folder .. "/color.stl")
   check(load("color.stl", (STL:gsub("solid a\n", "%0# made by hand\ncolor 1 0 0\n", 1))).count == 1, "lines between facets")
   warns(":2: this line, between facets, is ignored, and 1 more", folder .. "/color.stl")
   refuses(":1: the first word solid expected, got 'facet normal 0 0 1 outer loop vertex 0 0'", "no.stl", (STL:gsub("solid a\n", "", 1)))
@@ -406,6 +409,87 @@ function tests.jpeg()
     local done, message = pcall(glint.texture, { file = write("bad.jpg", bad) })
     check(not done and message:find("bad.jpg: not a whole JPEG: ", 1, true), "a cut JPEG: %s", message)
   end
+end
+
+-- ---- Smoothing groups, colours of faces ----
+
+-- Returns the values of a pass in a picture of a mesh, seen along -z.
+local function look(path, pass, shading)
+  local scene = glint.scene { camera = glint.camera { eye = { 0, 0.4, 5 }, at = { 0, 0.4, 0 }, fov = 24 }, ambient = 0.1,
+    glint.mesh { file = path, shading = shading }, glint.point_light { position = { 1, 2, 9 } } }
+  return scene:render({ width = 33, height = 25, output = "none", passes = "beauty,normal,albedo" }):bytes(pass)
+end
+
+local ROOF <const> = "v 0 0 0\nv 1 0 -1\nv 0 1 0\nv -3 0 -1\n" -- two faces of different slopes that meet in a ridge
+
+-- The same faces with normals computed by hand: their areas as vectors are (1, 0, 1) / 2 and (-1, 0, 3) / 2.
+local function with_normals(ridge_1, ridge_2)
+  return ROOF .. "vn 1 0 1\nvn -1 0 3\nvn 0 0 1\n" ..
+    ("f 1//%d 2//1 3//%d\nf 1//%d 3//%d 4//2\n"):format(ridge_1, ridge_1, ridge_2, ridge_2)
+end
+
+function tests.smoothing_groups()
+  local smooth, flat = write("smooth.obj", with_normals(3, 3)), write("flat.obj", ROOF .. "f 1 2 3\nf 1 3 4\n")
+  for _, shading in ipairs { "phong", "gouraud", "flat", "faceted" } do
+    local want = look(smooth, "beauty", shading)
+    for _, group in ipairs { "s 1", "s 7", "s\t1 # one", "s 4294967294" } do
+      local path = write("s.obj", ROOF .. group .. "\nf 1 2 3\ng other\nf 1 3 4\n")
+      check(look(path, "beauty", shading) == want, "%s, %s", group, shading)
+      check(look(path, "normal") == look(smooth, "normal"), "normals of %s", group)
+      warns("", path)
+    end
+  end
+  check(look(smooth, "normal") ~= look(flat, "normal"), "smooth and flat differ")
+  for _, text in ipairs { "s off\nf 1 2 3\nf 1 3 4\n", "s 0\nf 1 2 3\nf 1 3 4\n", "f 1 2 3\nf 1 3 4\n", "s 1\ns off\nf 1 2 3\nf 1 3 4\ns 1\n" } do
+    check(look(write("s.obj", ROOF .. text), "beauty") == look(flat, "beauty"), "%s", text)
+  end
+  local apart = look(write("apart.obj", with_normals(1, 2)), "beauty")
+  for _, text in ipairs { "s 1\nf 1 2 3\ns 2\nf 1 3 4\n", "s 1\nf 1 2 3\ns off\nf 1 3 4\n" } do
+    check(look(write("s.obj", ROOF .. text), "beauty") == apart, "groups share no normals: %s", text)
+  end
+  -- Normals of the file come first, and a polygon counts by its area.
+  local own = ROOF .. "vn 0 1 1\ns 1\nf 1//1 2//1 3//1\nf 1 3 4\n"
+  check(look(write("s.obj", own), "normal") ==
+    look(write("own.obj", ROOF .. "vn 0 1 1\nvn 0 0 1\nvn -1 0 3\nf 1//1 2//1 3//1\nf 1//2 3//2 4//3\n"), "normal"), "a file with some normals")
+  local quad = "v 0 0 0\nv 1 0 -1\nv 1 1 -1\nv 0 1 0\nv -2 0 -1\n" -- areas (1, 0, 1) and (-1, 0, 2) / 2
+  check(look(write("s.obj", quad .. "s 3\nf 1 2 3 4\nf 1 4 5\n"), "normal") ==
+    look(write("quad.obj", quad .. "vn 1 0 1\nvn 1 0 4\nvn -1 0 2\nf 1//2 2//1 3//1 4//2\nf 1//2 4//2 5//3\n"), "normal"), "a polygon and a triangle")
+  -- Two faces back to back have no mean normal, and stay flat.
+  check(look(write("s.obj", ROOF .. "s 1\nf 1 2 3\nf 3 2 1\n"), "normal") == look(write("f.obj", ROOF .. "f 1 2 3\nf 3 2 1\n"), "normal"), "back to back")
+  check(load("s.obj", ROOF .. "s 1\nf 1//9 2//9 3//9\n").shading == "phong", "indices of normals that are missing")
+  for _, text in ipairs { "on", "", "-1", "1.5", "99999999999" } do
+    local path = write("s.obj", ROOF .. "s " .. text .. "\nf 1 2 3\n")
+    check(glint.mesh { file = path }.shading == "faceted", "s %s", text)
+    warns((":5: 's %s' is ignored: the number of a smoothing group, or off, expected"):format(text), path)
+  end
+end
+
+function tests.colours_of_stl()
+  local function stl(head, colors)
+    local out = { (head .. ("\0"):rep(80)):sub(1, 80), ("<I4"):pack(#colors) }
+    for i, bits in ipairs(colors) do
+      local y = i - 1
+      out[#out + 1] = ("<ffffffffffffI2"):pack(0, 0, 1, -1, y, 0, 1, y, 0, 0, y + 0.9, 0, bits)
+    end
+    return table.concat(out)
+  end
+  local function color(path, x, y)
+    local scene = glint.scene { camera = glint.camera { eye = { x, y, 5 }, at = { x, y, 0 }, fov = 1 }, glint.mesh { file = path } }
+    local image = scene:render { width = 1, height = 1, output = "none", passes = "beauty,albedo" }
+    return { image:pixel(0, 0, "albedo") }
+  end
+  local path = write("viscam.stl", stl("made by hand", { 0xfc00, 0x83e0, 0x801f, 0x8000, 0x8421, 0x7fff, 0xffff }))
+  local DARK <const> = 8 / 255 / 12.92 -- 1 of 31, as the 8-bit value 8
+  for i, want in ipairs { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0, 0, 0 }, { DARK, DARK, DARK }, { 0.8, 0.8, 0.8 }, { 1, 1, 1 } } do
+    local got = color(path, 0, i - 0.8)
+    for c = 1, 3 do tally.near(got[c], want[c], 0.002, ("channel %d of face %d"):format(c, i)) end
+  end
+  warns("", path)
+  local dark = write("dark.stl", stl("", { 0x8421 }))
+  tally.near(color(dark, 0, 0.2)[1], DARK, 1e-6, "a file of dark colours only")
+  check(look(write("plain.stl", stl("", { 0, 0x7fff })), "albedo") == look(write("plain2.stl", stl("", { 0, 0 })), "albedo"), "bit 15 is not set")
+  local own = glint.mesh { file = path, material = glint.material { diffuse = 0.5 } }
+  check(own.material.diffuse[1] == 0.5, "the script's material comes first")
 end
 
 tally.run(tests)
