@@ -189,6 +189,23 @@ function tests.metals_in_rings()
   check(#list == 1 and list[1]:find("c.pdb:1: no cell: six numbers of one expected", 1, true), "numbers in other columns: %s", list[1])
 end
 
+function tests.radii_of_xyz()
+  for properties, row in pairs { ["species:S:1:pos:R:3:radius:R:1"] = "C 0 0 0 %g\nC 1 2 3 %g\n",
+    ["radius:R:1:species:S:1:pos:R:3"] = "%g C 0 0 0\n%g C 1 2 3\n",
+    ["pos:R:3:v:R:3:Radius:R:1:species:S:1"] = "0 0 0 9 9 9 %g C\n1 2 3 9 9 9 %g C\n" } do
+    local path = write("r.xyz", "2\nProperties=" .. properties .. "\n" .. row:format(0.25, 0.75))
+    is(spell(xyz.frame(path)), "C 0 0 0 0.25; C 1 2 3 0.75", properties)
+    local set = particles.new():add_frame(xyz.frame(path))
+    local low, high = set.low[1], set.high[3]
+    check(low == -0.25 and high == 3.75, "spheres of these radii: %g, %g", low, high)
+    path = write("d.xyz", "2\nProperties=" .. properties:gsub("[rR]adius", "diameter") .. "\n" .. row:format(0.5, 1.5))
+    is(spell(xyz.frame(path)), "C 0 0 0 0.25; C 1 2 3 0.75", "half of a diameter")
+  end
+  raises('r.xyz:3: radius (a finite number) expected, got "x"', spell, xyz.frame(write("r.xyz", "1\nProperties=species:S:1:pos:R:3:radius:R:1\nC 0 0 0 x\n")))
+  local wide = write("w.xyz", "1\nProperties=species:S:1:pos:R:3:f:R:90:radius:R:1\nC 0 0 0" .. (" 1"):rep(91) .. "\n")
+  raises("radius among the first 90 columns", xyz.frame, wide)
+end
+
 function tests.keys_of_xyz()
   local function box_of(comment)
     return xyz.frame(write("k.xyz", "1\n" .. comment .. "\nC 1 2 3\n")).box
@@ -355,6 +372,7 @@ function tests.clouds()
   end
   is(colored("n.ply", head:format("ascii", "") .. "nan nan nan 1 1 1\n1 0 0 0 255 0\n"), "1 0 0 #00ff00", "gaps")
   is(colored("f.ply", (head:gsub("uchar", "float"):format("ascii", "")) .. "0 0 0 1 0 0\n1 0 0 0 1 0\n"), RED_GREEN, "colours 0 .. 1")
+  is(colored("g.ply", (head:gsub("uchar", "float"):format("ascii", "")) .. "0 0 0 255 0 0\n1 0 0 0 255 0\n"), RED_GREEN, "colours 0 .. 255 as floats")
   raises("c.ply:13: point 2 of 2 with 6 numbers expected, got the end of the file", colored, "c.ply", head:format("ascii", "") .. "0 0 0 1 0 0\n")
   local pcd = "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F %s\nCOUNT 1 1 1 1\n" ..
     "WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA %s\n"
@@ -363,6 +381,15 @@ function tests.clouds()
   is(colored("b.pcd", pcd:format("F", "binary") .. ("<fffI4fffI4"):pack(0, 0, 0, 0xff0000, 1, 0, 0, 0x00ff00)), RED_GREEN, "binary")
   is(colored("v.pcd", (pcd:gsub("^.-\n", ""):format("U", "ascii")) .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, "without a first comment")
   is(colored("o.pcd", (pcd:gsub("FIELDS", "COLUMNS"):gsub("0%.7", ".5"):format("U", "ASCII")) .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, "version .5")
+  for type, size in pairs { F = 4, ["F "] = 8, I = 4, U = 4 } do
+    local kind = pcd:gsub("4\nTYPE", size .. "\nTYPE"):format(type, "ascii")
+    is(colored("w.pcd", kind .. "0 0 0 16711680\n1 0 0 65280\n"), RED_GREEN, "packed whole numbers of type " .. type)
+    is(colored("w.pcd", kind .. "0 0 0 660510\n1 0 0 30\n"), "0 0 0 #0a141e; 1 0 0 #00001e", "dark ones of type " .. type)
+  end
+  is(colored("w.pcd", pcd:format("F", "ascii") .. "0 0 0 1.671168e+07\n1 0 0 65280.0\n"), RED_GREEN, "whole numbers with a point")
+  is(colored("w.pcd", pcd:format("F", "binary") .. ("<ffffffff"):pack(0, 0, 0, 0xff0000, 1, 0, 0, 0xff00)), RED_GREEN, "binary whole numbers")
+  is(colored("s.pcd", pcd:gsub("rgb", "r g b"):gsub("4 4 4 4", "4 4 4 4 4 4"):gsub("1 1 1 1", "1 1 1 1 1 1"):format("F F F", "ascii") ..
+    "0 0 0 255 0 0\n1 0 0 0 255 0\n"), RED_GREEN, "three fields of whole numbers")
   is(colored("n.pcd", pcd:format("F", "ascii") .. "0 0 0 nan\n1 0 0 9.14767637e-41\n"), "0 0 0 point; 1 0 0 #00ff00", "a colour that a text lost")
   is(colored("m.ply", (head:format("ascii", "")) .. "0 0\n0 255 0 0\n1 0 0\n0\n255 0\n"), RED_GREEN, "a point over several lines")
 end

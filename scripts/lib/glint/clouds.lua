@@ -24,9 +24,28 @@ local function words(line)
   return list
 end
 
--- Returns the value of full colour: 255; 1 if numbers have fractions; 65535 for 16 bits.
-local function most_of(code)
-  return ({ f = 1, d = 1, H = 65535 })[code] or 255
+local PROBED = 50 -- rows that are examined for the value of full colour
+
+-- Returns the value of full colour: 65535 for 16 bits, and 1 for numbers with fractions; otherwise 255. Then a function
+-- that returns the same rows.
+local function most_of(code, place, rows)
+  if code ~= "f" and code ~= "d" then return code == "H" and 65535 or 255, rows end
+  local ahead, at, most, is_whole = {}, 0, 0, true
+  for i = 1, PROBED do
+    ahead[i] = rows()
+    if not ahead[i] then break end
+    for _, name in ipairs { "red", "green", "blue" } do
+      local v = ahead[i][place[name]]
+      if v == v then most, is_whole = math.max(most, v), is_whole and v == math.floor(v) end
+    end
+  end
+  return most > (is_whole and 1 or 16) and 255 or 1, function()
+    at = at + 1
+    local list = ahead[at]
+    ahead[at] = nil
+    if list or at <= PROBED then return list end
+    return rows()
+  end
 end
 
 -- ---- Rows ----
@@ -214,14 +233,15 @@ local function unpack_color(layout, place)
   local rgb, n = place.rgb or place.rgba, #layout.names
   if not rgb then return nil end
   for i, name in ipairs { "red", "green", "blue" } do layout.names[n + i] = name end
-  local is_float = layout.codes[rgb] == "f"
+  local is_float = layout.codes[rgb] == "f" or layout.codes[rgb] == "d"
   return function(list)
     local code = list[rgb]
     if code ~= code then -- NaN: as text, some colours' bits are not a number
       list[n + 1], list[n + 2], list[n + 3] = code, code, code
       return
     end
-    code = is_float and ("<I4"):unpack(("<f"):pack(code)) or math.tointeger(code) or 0
+    local whole = math.tointeger(code) -- as bits of a float, red, green and blue are below 4e-38
+    code = whole and whole & 0xffffffff or is_float and ("<I4"):unpack(("<f"):pack(code)) or 0
     list[n + 1], list[n + 2], list[n + 3] = code >> 16 & 255, code >> 8 & 255, code & 255
   end
 end
@@ -262,7 +282,9 @@ function clouds.start(source, line)
   frames.name_columns(fields, layout.names, function(wanted) return pick(wanted, fields.places) end)
   place = fields.places
   if place.red and place.green and place.blue then
-    fields.color = { most = color and 255 or most_of(layout.codes[place.red]) }
+    local most = 255
+    if not color then most, rows = most_of(layout.codes[place.red], place, rows) end
+    fields.color = { most = most }
   end
   return fields, function()
     for list in rows do

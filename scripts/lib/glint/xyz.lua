@@ -6,7 +6,8 @@
 -- Extended XYZ describes the columns and the periodic cell in its comment:
 --     Lattice="10 0 0 0 10 0 0 0 10" Properties=species:S:1:pos:R:3:vel:R:3:charge:R:1 pbc="T T F"
 -- frame.keys has the values of all keys as texts, by their names in small letters. frame.columns are then
--- species, x, y, z, vel_x, vel_y, vel_z, charge (name_1 ... for a property of 2 or of more than 3 numbers);
+-- species, x, y, z, vel_x, vel_y, vel_z, charge (name_1 ... for a property of 2 or of more than 3 numbers); a column
+-- radius or diameter gives the radius of each atom;
 -- frame.cell = { origin, a, b, c } has the cell's corner and sides; frame.box is the same as a box (glint.box),
 -- if a lies along x and b in the plane of x and y. Without Properties the columns after the fourth are "5", "6"
 -- and so on.
@@ -24,7 +25,9 @@ local function read_atom(source, frame, index)
   if frame.swaps and label then x, y, z, label = label, x, y, z end
   if frame.is_type and label and label:find "^%d+$" then label = "type" .. label end
   if not label then source:fail(("atom %d of %d (%s)"):format(index, frame.count, frame.form), line) end
-  return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z")
+  local size = frame.size_pattern and source:number_of(line:match(frame.size_pattern), frame.size_name)
+  if size and frame.size_name:lower() == "diameter" then size = size / 2 end
+  return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z"), size
 end
 
 -- Returns the text between quotation marks or brackets at `from`, and the position after them. nil: they do not end.
@@ -77,6 +80,13 @@ local function property_names(source, text, comment)
   return names
 end
 
+-- Returns the number of a column, by its name in small letters.
+local function column_of(names, wanted)
+  for i, name in ipairs(names) do
+    if name:lower() == wanted then return i end
+  end
+end
+
 -- Chooses how a line is read: one pattern for the four columns that every frame has.
 local function find_columns(source, fields)
   local text = fields.keys.properties
@@ -95,6 +105,12 @@ local function find_columns(source, fields)
   fields.pattern, fields.swaps = "^%s*" .. table.concat(parts, "%s+"), label > place.x
   fields.is_type = label == place.type
   fields.form = text and table.concat(names, " ") or "element x y z"
+  local size = column_of(names, "radius") or column_of(names, "diameter")
+  if size and size > frames.WORDS then
+    source:fail(("%s among the first %d columns"):format(names[size], frames.WORDS), fields.comment)
+  end
+  fields.size_name = names[size]
+  fields.size_pattern = size and "^%s*" .. ("%S+%s+"):rep(size - 1) .. "(%S+)"
   frames.name_columns(fields, names)
   if not text then
     setmetatable(fields.places, { __index = function(_, name)
@@ -156,7 +172,8 @@ local function start(source, number)
   end
 end
 
---- Iterates over the frames of a file: number, count, comment, and frame:atoms() -> label, x, y, z (angstroms).
+--- Iterates over the frames of a file: number, count, comment, and frame:atoms() -> label, x, y, z, radius or nil
+--- (angstroms).
 ---@param path string
 function xyz.frames(path)
   return frames.each(path, start)
