@@ -10,7 +10,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  samples = { 16, min = 1, max = 65536, doc = "samples of the pixels that need them" },
+  samples = { 16, min = 1, max = 65536, whole = true, doc = "samples of the pixels that need them" },
 }
 
 local scene = glint.scene {

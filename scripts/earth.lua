@@ -10,7 +10,7 @@ local png = require "glint.png"
 
 local P = glint.params {
   file = { "", doc = "a picture of the globe instead of the painted one" },
-  width = { 384, min = 16, max = 4096, doc = "width of the painted picture, pixels" },
+  width = { 384, min = 16, max = 4096, whole = true, doc = "width of the painted picture, pixels" },
 }
 
 local function height(p)

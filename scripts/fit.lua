@@ -10,7 +10,7 @@ local fit = require "glint.fit"
 
 local P = glint.params {
   file = { "", doc = "picture to fit, a .png or .pfm; none: a picture rendered from hidden numbers" },
-  steps = { 20, min = 1, max = 100, doc = "maximum number of steps" },
+  steps = { 20, min = 1, max = 100, whole = true, doc = "maximum number of steps" },
 }
 
 local NAMES = { "lamp_x", "lamp_y", "lamp_z", "intensity", "shininess" }

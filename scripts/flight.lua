@@ -5,7 +5,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  frames = { 96, min = 2, max = 10000, doc = "frames in the flight" },
+  frames = { 96, min = 2, max = 10000, whole = true, doc = "frames in the flight" },
   ease = { "spline", choices = { "spline", "smooth", "linear" }, doc = "how the camera goes from key to key" },
 }
 

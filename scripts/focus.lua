@@ -13,7 +13,7 @@ local glint = require "glint"
 local P = glint.params {
   aperture = { 0.16, min = 0, max = 1, doc = "radius of the lens, world units" },
   projection = { "perspective", choices = { "perspective", "orthographic" }, doc = "orthographic: one lens per ray" },
-  blades = { 6, min = 0, max = 64, doc = "corners of the lens; 0: round" },
+  blades = { 6, min = 0, max = 64, whole = true, doc = "corners of the lens; 0: round" },
 }
 
 local EYE = { -1.6, 1.5, 8 }

@@ -12,7 +12,7 @@ local models = require "glint.models"
 
 local P = glint.params {
   picture = { "curves", choices = { "curves", "balls" }, doc = "curves of the formulas, or rendered balls" },
-  steps = { 40, min = 8, max = 200, doc = "rings of directions that are summed up" },
+  steps = { 40, min = 8, max = 200, whole = true, doc = "rings of directions that are summed up" },
   model = {
     "none", choices = { "none", "phong", "blinn_phong", "ward", "toon", "gooch" },
     doc = "a shader to be drawn beside them",

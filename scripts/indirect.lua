@@ -13,7 +13,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  samples = { 64, min = 1, max = 65536, doc = "light paths for each sample of a pixel" },
+  samples = { 64, min = 1, max = 65536, whole = true, doc = "light paths for each sample of a pixel" },
   ambient = { 0.3, min = 0, max = 1, doc = "ambient light, which replaces the light that paths leave out" },
 }
 

@@ -8,7 +8,7 @@ local glint = require "glint"
 local P = glint.params {
   map = { "viridis", choices = { "viridis", "magma", "cividis", "turbo", "coolwarm" }, doc = "colour map" },
   size = { 0, min = 0, max = 100, doc = "size of the letters, points; 0: by the picture's height" },
-  side = { 15, min = 2, max = 60, doc = "balls along a side" },
+  side = { 15, min = 2, max = 60, whole = true, doc = "balls along a side" },
 }
 
 local HEIGHT, COLORS = 1.2, 64

@@ -8,10 +8,10 @@
 local glint = require "glint"
 
 local P = glint.params {
-  dots = { 20, min = 4, max = 60, doc = "dots around the lantern" },
-  rows = { 11, min = 3, max = 31, doc = "rows from pole to pole" },
+  dots = { 20, min = 4, max = 60, whole = true, doc = "dots around the lantern" },
+  rows = { 11, min = 3, max = 31, whole = true, doc = "rows from pole to pole" },
   size = { 0.36, min = 0.05, max = 0.5, doc = "radius of a dot, in rows" },
-  frames = { 24, min = 1, max = 240, doc = "frames of a turn" },
+  frames = { 24, min = 1, max = 240, whole = true, doc = "frames of a turn" },
 }
 
 local shell = glint.pattern(function(_, s)

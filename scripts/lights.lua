@@ -8,7 +8,9 @@
 --     glint relight lights.exr -o mixer.html                          a page with a slider and a colour for each
 local glint = require "glint"
 
-local P = glint.params { lamp_samples = { 16, min = 1, max = 256, doc = "sample points on each lamp with a surface" } }
+local P = glint.params {
+  lamp_samples = { 16, min = 1, max = 256, whole = true, doc = "sample points on each lamp with a surface" },
+}
 
 local function matt(color) return glint.material { diffuse = color } end
 local function glossy(color) return glint.material { diffuse = color, specular = 0.5, shininess = 90 } end

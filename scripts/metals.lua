@@ -11,7 +11,7 @@ local glint = require "glint"
 
 local P = glint.params {
   distribution = { "ggx", choices = { "ggx", "beckmann" }, doc = "distribution of the facets' slopes" },
-  rays = { 16, min = 1, max = 4096, doc = "reflected rays for each sample of a pixel" },
+  rays = { 16, min = 1, max = 4096, whole = true, doc = "reflected rays for each sample of a pixel" },
 }
 
 local ROUGHNESS <const> = { 0.05, 0.2, 0.35, 0.5, 0.7 }

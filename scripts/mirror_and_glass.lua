@@ -13,7 +13,7 @@
 local glint = require "glint"
 local P = glint.params {
   ior = { 1.5, min = 1, max = 3, doc = "refractive index of the glass: water 1.33, glass 1.5, diamond 2.42" },
-  max_depth = { 8, min = 0, max = 31, doc = "longest chain of mirrors and refractions" },
+  max_depth = { 8, min = 0, max = 31, whole = true, doc = "longest chain of mirrors and refractions" },
   fresnel = { true, doc = "split the light at the glass as a dielectric does; false: let all of it through" },
 }
 

@@ -9,7 +9,7 @@ local particles, bonds = require "glint.particles", require "glint.bonds"
 
 local P = glint.params {
   file = { (arg[0]:match "^.*/" or "") .. "data/caffeine.xyz", doc = "a file .xyz or .pdb" },
-  frame = { 1, min = 1, max = 1e9, doc = "number of the frame or model in the file" },
+  frame = { 1, min = 1, max = 1e9, whole = true, doc = "number of the frame or model in the file" },
   style = { "balls", choices = { "balls", "sticks" }, doc = "balls of full radius, or of a quarter of it with bonds" },
   scale = { 1, min = 0.01, max = 10, doc = "factor of the radii" },
 }

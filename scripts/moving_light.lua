@@ -13,7 +13,7 @@ local glint = require "glint"
 local P = glint.params {
   radius = { 13, min = 1, max = 40, doc = "orbit radius, world units" },
   height = { 15, min = 5, max = 60, doc = "height of the lamp over the ground" },
-  frames = { 120, min = 1, max = 10000, doc = "pictures in one turn" },
+  frames = { 120, min = 1, max = 10000, whole = true, doc = "pictures in one turn" },
 }
 
 local function paint(r, g, b)

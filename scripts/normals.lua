@@ -5,7 +5,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  faces = { 4, min = 2, max = 24, doc = "of each arch" },
+  faces = { 4, min = 2, max = 24, whole = true, doc = "of each arch" },
   shininess = { 60, min = 1, max = 200, doc = "of the highlight" },
 }
 

@@ -6,9 +6,9 @@
 local glint = require "glint"
 
 local P = glint.params {
-  samples = { 32, min = 1, max = 65536, doc = "rays from each point" },
+  samples = { 32, min = 1, max = 65536, whole = true, doc = "rays from each point" },
   distance = { 3, min = 0.01, doc = "distance of the farthest occluders in the third frame" },
-  side = { 22, min = 4, max = 200, doc = "balls along a side" },
+  side = { 22, min = 4, max = 200, whole = true, doc = "balls along a side" },
 }
 
 local state = 7

@@ -7,10 +7,10 @@ local glint = require "glint"
 local particles, lammps, bonds = require "glint.particles", require "glint.lammps", require "glint.bonds"
 
 local P = glint.params {
-  count = { 100000, min = 1, max = 1e8, doc = "number of particles" },
+  count = { 100000, min = 1, max = 1e8, whole = true, doc = "number of particles" },
   format = { "f64", choices = { "f64", "f32" }, doc = "number format of the spheres; f32 takes half the memory" },
   file = { "", doc = "a LAMMPS dump file" },
-  frame = { 1, min = 1, max = 1e9, doc = "number of the frame in the file" },
+  frame = { 1, min = 1, max = 1e9, whole = true, doc = "number of the frame in the file" },
   longest = { 0, min = 0, max = 1000, doc = "longest bond to draw, with radii halved; 0: no bonds" },
 }
 local joins = P.longest > 0

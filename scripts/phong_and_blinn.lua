@@ -12,7 +12,7 @@ local glint = require "glint"
 local P = glint.params {
   shininess = { 24, min = 1, max = 500, doc = "exponent of the Phong ball" },
   factor = { 4, min = 0.1, max = 16, doc = "Blinn-Phong's exponent is this many times Phong's" },
-  frames = { 5, min = 1, max = 1000, doc = "number of angles of the light" },
+  frames = { 5, min = 1, max = 1000, whole = true, doc = "number of angles of the light" },
 }
 
 local tint = { 0.08, 0.22, 0.34 }

@@ -11,7 +11,7 @@ local glint = require "glint"
 local P = glint.params {
   links = { 11, min = 3, max = 99, doc = "rings of the chain" },
   thickness = { 0.17, min = 0.01, max = 0.3, doc = "radius of a ring's tube, as a fraction of the ring's radius" },
-  frames = { 48, min = 1, max = 10000, doc = "pictures of the lamp's motion" },
+  frames = { 48, min = 1, max = 10000, whole = true, doc = "pictures of the lamp's motion" },
 }
 
 local steel = glint.material { diffuse = { 0.42, 0.45, 0.5 }, specular = 0.7, shininess = 70 }

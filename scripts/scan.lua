@@ -5,7 +5,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  rows = { 80, min = 3, max = 1000, doc = "faces from pole to pole" },
+  rows = { 80, min = 3, max = 1000, whole = true, doc = "faces from pole to pole" },
   file = { "scan.ply", doc = "the .ply file to write" },
 }
 

@@ -9,7 +9,7 @@ local glint = require "glint"
 
 local P = glint.params {
   kind = { "grid", choices = { "grid", "log" }, doc = "grid: specular by shininess; log: shininess 1 .. 1000" },
-  steps = { 16, min = 2, max = 1000, doc = "pictures of the log sweep" },
+  steps = { 16, min = 2, max = 1000, whole = true, doc = "pictures of the log sweep" },
 }
 
 local clay = glint.material { diffuse = { 0.50, 0.16, 0.10 }, specular = 0.5, shininess = 50 }

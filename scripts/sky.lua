@@ -9,8 +9,8 @@ local png = require "glint.png"
 
 local P = glint.params {
   file = { "", doc = "a picture of all directions instead of the painted one" },
-  width = { 512, min = 16, max = 8192, doc = "width of the painted picture, pixels" },
-  samples = { 16, min = 1, max = 4096, doc = "light paths from each point" },
+  width = { 512, min = 16, max = 8192, whole = true, doc = "width of the painted picture, pixels" },
+  samples = { 16, min = 1, max = 4096, whole = true, doc = "light paths from each point" },
 }
 
 local SUN <const> = glint.unit { -0.5, 0.45, -1 }

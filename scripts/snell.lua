@@ -8,7 +8,7 @@ local P = glint.params {
   angle = { 50, min = 1, max = 89, doc = "of the ray from the normal, degrees" },
   ior = { 1.5, min = 1, max = 4, doc = "index of refraction of the slab: water 1.33, glass 1.5, diamond 2.4" },
   side = { "outside", choices = { "outside", "inside" }, doc = "from where the ray comes" },
-  depth = { 4, min = 1, max = 10, doc = "number of surfaces at which a ray goes on" },
+  depth = { 4, min = 1, max = 10, whole = true, doc = "number of surfaces at which a ray goes on" },
 }
 
 local ink, warm, cool = "#1d2228", "#b8420f", "#0b5fa5"

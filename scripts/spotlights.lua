@@ -14,7 +14,7 @@ local glint = require "glint"
 local P = glint.params {
   outer = { 13, min = 1, max = 60, doc = "half angle of the cones, degrees" },
   exponent = { 120, min = 0, max = 5000, doc = "exponent of the right spot" },
-  frames = { 1, min = 1, max = 1000, doc = "1 is a still; with more frames, the lights swing" },
+  frames = { 1, min = 1, max = 1000, whole = true, doc = "1 is a still; with more frames, the lights swing" },
 }
 
 local function spot(x, color, inner, exponent)

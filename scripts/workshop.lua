@@ -19,7 +19,8 @@ local P = glint.params {
   shininess = { 128, min = 0, max = 2000, doc = "exponent of the highlight: higher is smaller and sharper" },
   shadows = { true, doc = "does the lamp cast shadows?" },
   radius = { 0, min = 0, max = 5, doc = "radius of the lamp: 0 is a point with hard shadows, 2 gives soft shadows" },
-  frames = { 1, min = 1, max = 10000, doc = "1 is a still; with more frames, the lamp swings from side to side" },
+  frames = { 1, min = 1, max = 10000, whole = true,
+    doc = "1 is a still; with more frames, the lamp swings from side to side" },
 }
 
 -- Returns 1 if the term is part of the chosen step, else 0.

@@ -35,7 +35,7 @@ function the.params(params)
   local list = {}
   for i, spec in ipairs(params) do
     local out = {}
-    for _, name in ipairs { "name", "type", "default", "value", "min", "max", "doc" } do
+    for _, name in ipairs { "name", "type", "default", "value", "min", "max", "whole", "doc" } do
       if spec[name] ~= nil then out[#out + 1] = json(name) .. ":" .. json(spec[name]) end
     end
     if spec.choices then out[#out + 1] = '"choices":[' .. choices_of(spec, json, ",") .. "]" end
@@ -55,6 +55,7 @@ function the.people(what)
     #what.params > 0 and "Parameters, set by --set name=value:\n" or what.script .. " has no parameters.\n" }
   for _, spec in ipairs(what.params) do
     local range = (spec.min or spec.max) and ("  %s .. %s"):format(spec.min or "", spec.max or "") or ""
+    if spec.whole then range = range .. "  whole" end
     out[#out + 1] = ("  %-22s%s%s%s\n"):format(spec.name .. "=" .. tostring(spec.value), range,
       spec.choices and "  " .. choices_of(spec, tostring, "|") or "", spec.doc and "  " .. spec.doc or "")
   end

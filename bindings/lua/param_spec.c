@@ -23,8 +23,9 @@ static const char *push_allowed(lua_State *L, int spec)
         }
         luaL_pushresult(&out);
     } else {
+        const bool whole = lua_getfield(L, spec, "whole") == LUA_TBOOLEAN && lua_toboolean(L, -1);
         lua_getfield(L, spec, "type");
-        const char *type = lua_tostring(L, -1);
+        const char *type = whole ? "whole number" : lua_tostring(L, -1);
         bool min = lua_getfield(L, spec, "min") != LUA_TNIL, max = lua_getfield(L, spec, "max") != LUA_TNIL;
         const char *low = luaL_tolstring(L, -2, NULL), *high = luaL_tolstring(L, -2, NULL);
         if (min && max)
@@ -55,10 +56,12 @@ static bool is_choice(lua_State *L, int choices, int value)
 // absolute.
 static bool is_allowed(lua_State *L, int spec, int value)
 {
-    bool good = true;
     luaL_checkstack(L, 6, "params");
+    lua_getfield(L, spec, "whole");
+    bool good = !lua_toboolean(L, -1) || lua_isinteger(L, value);
+    lua_pop(L, 1);
     if (lua_getfield(L, spec, "choices") == LUA_TTABLE)
-        good = is_choice(L, lua_gettop(L), value);
+        good = good && is_choice(L, lua_gettop(L), value);
     if (lua_getfield(L, spec, "min") != LUA_TNIL)
         good = good && lua_compare(L, -1, value, LUA_OPLE);
     if (lua_getfield(L, spec, "max") != LUA_TNIL)
@@ -112,20 +115,22 @@ static void check_type(lua_State *L, int index, const char *path)
         glintL_refuse(L, index, path, "finite number");
 }
 
-// Copies min, max, doc and choices from the table at `from` into the spec on top. The default is at spec.default.
+// Copies min, max, doc, choices and whole from the table at `from` into the spec on top. The default is at spec.default.
 static void read_limits(lua_State *L, int from, int spec, const char *path, const char *type)
 {
-    static const char *const names[] = { "min", "max", "doc", "choices" };
+    static const char *const names[] = { "min", "max", "doc", "choices", "whole" };
     char full[160];
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         snprintf(full, sizeof full, "%s.%s", path, names[i]);
         int found = lua_getfield(L, from, names[i]);
         if (found == LUA_TNIL) {
             lua_pop(L, 1);
             continue;
         }
-        if (i < 2 && strcmp(type, "number") != 0)
+        if ((i < 2 || i == 4) && strcmp(type, "number") != 0)
             glintL_error(L, "%s: a %s has no %s", full, type, names[i]);
+        if (i == 4 && found != LUA_TBOOLEAN)
+            glintL_refuse(L, -1, full, "boolean");
         if (i < 2 && !(found == LUA_TNUMBER && isfinite(lua_tonumber(L, -1))))
             glintL_refuse(L, -1, full, "finite number");
         if (i == 2 && found != LUA_TSTRING)
@@ -147,7 +152,8 @@ static void read_limits(lua_State *L, int from, int spec, const char *path, cons
 static void check_keys(lua_State *L, int index, const char *path)
 {
     static const glintL_field known[] = {
-        { .name = "min" }, { .name = "max" }, { .name = "choices" }, { .name = "doc" }, { .name = NULL }
+        { .name = "min" },   { .name = "max" }, { .name = "choices" }, { .name = "doc" },
+        { .name = "whole" }, { .name = NULL }
     };
     lua_pushnil(L);
     while (lua_next(L, index)) {

@@ -273,7 +273,7 @@ function glint.spheres(fields) end
 --- Polygons that share vertices, from tables or from a file, .obj, .stl or .ply; copied once. Give `file`, or
 --- `vertices` and `faces`. Concave faces are triangulated; faces that cross themselves are refused.
 ---@class glint.mesh_fields: glint.shape_fields
----@field file? string  a mesh, relative to the working directory: .stl; .ply (without `material` also its colours, with one material for each colour); else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
+---@field file? string  a mesh, relative to the working directory: .stl (without `material` also VisCAM's colours); .ply (without `material` also its colours, with one material for each colour); else a Wavefront .obj (v, vt, vn, f, s; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
 ---@field vertices? glint.vec3[]|number[]|string  positions: a list of {x, y, z}, a flat table or packed numbers
 ---@field faces? integer[][]|integer[]|string  indices of vertices, from 1: a list for each face, with any number of corners, counter-clockwise seen from the front; or a flat table or packed u32 numbers of triangles
 ---@field normals? glint.vec3[]|number[]|string  one per vertex, or one per corner in the order of the faces; not zero, need not be unit
@@ -770,6 +770,7 @@ function image:save(path, options) end
 ---@field min? number  smallest value allowed
 ---@field max? number  largest value allowed
 ---@field choices? (number|string)[]  the only values allowed
+---@field whole? boolean  whether only whole numbers are allowed
 ---@field doc? string  one line for `--help`
 
 ---@param list table<string, glint.param|number|boolean|string>

@@ -239,7 +239,7 @@ int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
     if (run->exit_code)
         cli_report_error(output, 0, run->exit_code, run->message);
     else
-        cli_reporter(output).figure(output, "page", options->output, run->total > 0 ? run->total : run->count);
+        cli_reporter(output).figure(output, "page", options->output, 1);
     return run->exit_code;
 }
 

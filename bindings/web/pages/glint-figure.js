@@ -59,9 +59,8 @@ export function written(value) {
 }
 
 // Returns the picture's samples and error as text; "" for a scene of one sample.
-export function quality({ samples, ownSamples, error, trusted }) {
-  const estimate = error === undefined ? "" : `, estimated error ${written(error)}${trusted ? "" : " (not to be trusted)"}`
-  return ownSamples > 1 ? `${samples} of ${ownSamples} samples${estimate}` : ""
+export function quality({ samples, ownSamples, error }) {
+  return ownSamples > 1 ? `${samples} of ${ownSamples} samples${error === undefined ? "" : `, estimated error ${written(error)}`}` : ""
 }
 
 // Makes the control of one parameter: a labelled slider, list, box or field. It calls `changed(value, moving)` for each
@@ -111,7 +110,7 @@ function makeInput(param, label) {
   }
   if (param.type === "number" && param.min !== undefined && param.max !== undefined) return makeSlider(param, input)
   input.type = param.type === "number" ? "number" : "text"
-  if (param.type === "number") input.step = "any"
+  if (param.type === "number") input.step = param.whole ? 1 : "any"
   input.value = param.value
   const number = () => input.value === "" || !input.validity.valid ? undefined : Number(input.value)
   return { input, set: value => { input.value = value }, value: param.type === "number" ? number : () => input.value }
@@ -119,7 +118,7 @@ function makeInput(param, label) {
 
 // Makes a slider of 1000 steps, or of whole numbers if the range has few; logarithmic for large ratios.
 function makeSlider(param, input) {
-  const whole = Number.isInteger(param.value) && Number.isInteger(param.min) && Number.isInteger(param.max) && param.max - param.min > 4
+  const whole = param.whole || Number.isInteger(param.value) && Number.isInteger(param.min) && Number.isInteger(param.max) && param.max - param.min > 4
   const logarithmic = param.min > 0 && param.max / param.min > LOGARITHMIC
   input.type = "range"
   const place = logarithmic ? Math.log : x => x
