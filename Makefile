@@ -371,6 +371,16 @@ check: ## every test; T=name runs those whose name has it
 check-run: tests
 	@T="$(T)" $(RUNNER) make:lint make:check-headers make:check-symbols make:check-layers $(TEST_BIN) $(HARD_BIN) $(SCRIPTED)
 
+# Bits, in a few minutes: kernels against the reference, goldens, threads, and the interface in Lua.
+QUICK := $(filter $(BUILD)/tests/engine/test_stages_% %/test_bvh %/test_image,$(TEST_BIN)) tests/command/golden.sh tests/lua/test_api.lua
+.PHONY: quick quick-run
+quick: ## what most mistakes break, in a few minutes: kernels against the reference, goldens, the interface in Lua
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory quick-run
+
+quick-run: all $(QUICK)
+	@$(RUNNER) make:check-layers $(QUICK)
+
 # Tests worth running under a sanitizer: C, Lua and the command line. Excludes tests of other programs and of
 # installed files, and tests that only run scripts which other tests also run.
 SANITIZED := $(filter-out $(addprefix tests/,$(addprefix command/,povray.sh gallery.sh install.sh readme.sh) machines/systems.sh),$(SCRIPTED))

@@ -4,7 +4,7 @@
 #   deps.sh WHAT ...      installs missing packages with apt: build, test, bench (speed comparisons), films (the test
 #                         with ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm),
 #                         arm64 (the tests under qemu), musl (the tests of a static command), web (the module for
-#                         browsers), fuzz (the fuzzers), package (the test of Debian's source package)
+#                         browsers), fuzz (the fuzzers), package (the test of Debian's source package), ci (what only .ci/run uses)
 set -eu
 
 # package, and a test for its presence
@@ -76,6 +76,9 @@ package_optional='
 dpkg-dev        command:dpkg-buildpackage
 debhelper       command:dh
 lintian         command:lintian
+'
+ci_optional='
+ccache          command:ccache
 '
 fuzz_required='
 clang           command:clang
@@ -177,11 +180,12 @@ for what in "$@"; do
     arm64) require "$arm64_required" ;;
     musl) require "$musl_required" ;;
     web) require "$web_required" ;;
+    ci) prefer "$ci_optional" "equal objects will be compiled again" ;;
     package) prefer "$package_optional" "the test that needs it will be skipped" ;;
     fuzz) require "$fuzz_required" ;;
     farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | musl | web | fuzz | package ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | musl | web | fuzz | package | ci ..." >&2
         exit 2
         ;;
     esac
