@@ -67,6 +67,8 @@ static int sheet(lua_State *L)
     code = glintL_sheet_make(L, message);
     if (code)
         return cli_task_fail(L, code, message);
+    if (*message)
+        cli_print_warning(task->output, message);
     cli_reporter(task->output).figure(task->output, "sheet", options->output, (int64_t)count);
     return 0;
 }

@@ -203,8 +203,7 @@ int glintL_sheet_make(lua_State *L, char message[GLINTL_MESSAGE_SIZE])
 {
     glintL_call_own(L, "sheet", "make", 1, 2);
     const int code = (int)lua_tointeger(L, -2);
-    if (code)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", lua_tostring(L, -1));
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%s", lua_isnil(L, -1) ? "" : lua_tostring(L, -1));
     lua_pop(L, 2);
     return code;
 }

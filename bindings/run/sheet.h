@@ -6,8 +6,8 @@
 
 // ---- sheet.c ----
 
-/// Draws the sheet that the table on top describes (see sheet.lua), and pops it. Returns the exit code; the message says
-/// what is wrong. May raise.
+/// Draws the sheet that the table on top describes (see sheet.lua), and pops it. Returns the exit code. The message says
+/// what is wrong; with the exit code 0 it is a warning or empty. May raise.
 int glintL_sheet_make(lua_State *L, char message[GLINTL_MESSAGE_SIZE]);
 
 // ---- sweep_sheet.c ----

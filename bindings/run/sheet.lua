@@ -126,10 +126,19 @@ local function frames_differ(pictures)
   return #pictures > 1
 end
 
+-- Returns the name of a cell's file, with its folders if other cells have files of that name.
+local function file_name(sheet, cell)
+  local name = base_name(sheet.files[cell])
+  for i, path in ipairs(sheet.files) do
+    if i ~= cell and base_name(path) == name then return sheet.files[cell] end
+  end
+  return name
+end
+
 -- Returns every axis and its value; without axes the frame number, otherwise the file name.
 local function default_label(sheet, axes, pictures, cell)
   if #axes > 0 then return spell_cell(sheet, axes, 1, #axes, cell, true, "\n") end
-  return axes.frames_differ and "frame " .. frame_of(pictures, cell) or base_name(sheet.files[cell])
+  return axes.frames_differ and "frame " .. frame_of(pictures, cell) or file_name(sheet, cell)
 end
 
 local function label_value(sheet, axes, pictures, cell, name)
@@ -247,25 +256,31 @@ local function draw(sheet, axes, labels)
   return the.draw_sheet(drawing)
 end
 
--- Makes a sheet. Returns the exit code, and a message unless it is 0.
+-- Makes a sheet. Returns the exit code and a message; with the code 0, the message is a warning or nil.
 function M.make(sheet)
   local wrong = M.check(sheet, #sheet.files)
   if wrong then return USAGE, wrong end
-  local pictures, code, message = finder.read_files(sheet)
-  if not pictures then return code or FAILED, message end
-  local axes, lines = finder.find(sheet, pictures), {}
+  local pictures, difference, message = finder.read_files(sheet)
+  if not pictures then return difference or FAILED, message end
+  local is_page = M.ends_in(sheet.path, "html")
+  local axes, lines = difference and { cells = #pictures } or finder.find(sheet, pictures, is_page), {}
   for i, axis in ipairs(axes) do lines[i] = axis.name .. "=\n" end
-  local columns, is_page = columns_of(sheet, axes), M.ends_in(sheet.path, "html")
+  local columns = columns_of(sheet, axes)
   axes.across = axes.is_grid and count_across(axes, columns)
-  axes.frames_differ = frames_differ(pictures)
+  axes.frames_differ = not difference and frames_differ(pictures)
   axes.has_heads = axes.is_grid and not sheet.labels and not sheet.label -- heads name the values of the axes
   axes.is_wrapped = #axes == 1 and not is_page and columns < #axes[1].values -- a value below each picture instead
   wrong = M.check_axes(sheet, concat(lines)) or check_columns(sheet, axes)
   if wrong then return USAGE, wrong end
   local labels, unknown = make_labels(sheet, axes, pictures)
   if not labels then return USAGE, unknown end
-  if is_page then return the.sheet_page.make(sheet, axes, pictures, labels) end
-  return draw(sheet, axes, labels)
+  local code
+  if is_page then
+    code, message = the.sheet_page.make(sheet, axes, pictures, labels)
+  else
+    code, message = draw(sheet, axes, labels)
+  end
+  return code, message or difference and difference .. "; the sheet has file names as labels"
 end
 
 return M

@@ -2,7 +2,7 @@
 local the = ...
 local M = {}
 local format, find, match, gmatch, sub = string.format, string.find, string.match, string.gmatch, string.sub
-local sort, ipairs = table.sort, ipairs
+local concat, sort, ipairs, next = table.concat, table.sort, ipairs, next
 
 local USAGE <const> = 2 -- exit code
 local AXES_MAX <const> = 16
@@ -26,9 +26,10 @@ end
 
 -- ---- The files and their axes ----
 
--- Reads the files. Returns nil, the exit code and a message if one is missing, or differs in size or origin.
+-- Reads the files. Returns the pictures and, if they come from different scripts, how they differ. Returns nil, the exit
+-- code and a message if one is missing or differs in size.
 function M.read_files(sheet)
-  local pictures = {}
+  local pictures, difference = {}, nil
   for i, path in ipairs(sheet.files) do
     local picture, code, message = the.read_picture(path)
     if not picture then return nil, code, message end
@@ -38,10 +39,9 @@ function M.read_files(sheet)
       return nil, USAGE, format("%s: %dx%d pixels expected, as in %s, got %dx%d", sub(path, 1, 200), first.width,
         first.height, sub(first_path, 1, 200), picture.width, picture.height)
     end
-    local wrong = not sheet.mixes and the.match_pictures(first, first_path, picture, path)
-    if wrong then return nil, USAGE, wrong end
+    if not sheet.mixes then difference = difference or the.match_pictures(first, first_path, picture, path) end
   end
-  return pictures
+  return pictures, difference
 end
 
 -- Returns an axis with the values of all cells; value_of(cell) returns one.
@@ -95,8 +95,27 @@ local function sort_axes(axes)
   end)
 end
 
--- Finds the axes: first the axes of sweeps, then the parameters, options and passes that differ.
-function M.find(sheet, pictures)
+-- Returns the axis of the frames of a film at each place of the other axes, or nil if not each place has as many. Its
+-- values are numbered from 1.
+local function new_frame_axis(axes)
+  local counts, nth, most = {}, {}, 0
+  for cell = 1, axes.cells do
+    local place = {}
+    for a, axis in ipairs(axes) do place[a] = axis.index[cell] end
+    place = concat(place, " ")
+    counts[place] = (counts[place] or 0) + 1
+    nth[cell] = counts[place]
+    if nth[cell] > most then most = nth[cell] end
+  end
+  for _, count in next, counts do
+    if count ~= most then return nil end
+  end
+  return most > 1 and new_axis("frame", axes.cells, function(cell) return format("%d", nth[cell]) end) or nil
+end
+
+-- Finds the axes: first the axes of sweeps, then the parameters, options and passes that differ. The pages of sweeps over
+-- films also have an axis of frames.
+function M.find(sheet, pictures, is_page)
   local axes = { cells = #pictures, known = {} }
   local function texts(keyword) return function(cell) return pictures[cell][keyword] end end
   local positions = sheet.positions
@@ -106,6 +125,7 @@ function M.find(sheet, pictures)
   local pass = new_axis("pass", #pictures, function(cell) return pictures[cell].pass or "beauty" end)
   if #pass.values > 1 and #axes < AXES_MAX then axes[#axes + 1] = pass end
   axes.is_grid = is_grid(axes)
+  if is_page and not axes.is_grid and #axes > 0 and #axes < AXES_MAX then axes[#axes + 1] = new_frame_axis(axes) end
   if not axes.is_grid then -- passes, and the last name in files of nested loops, change fastest
     sort_axes(axes)
     axes.is_grid = is_grid(axes)

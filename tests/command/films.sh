@@ -157,9 +157,18 @@ exits 0 "a larger picture" turn.lua -f 1 --size 48x24 -o larger.png -q
 exits 2 "of another size" sheet grid/0001.png larger_0001.png -o wrong.png
 says "is named with both sizes" 'larger_0001.png: 40x30 .*got 48x24'
 exits 0 "a picture of another script" turn.lua -f 1 --size 40x30 -o other.png -q
-exits 2 "in one sheet" sheet grid/0001.png other_0001.png -o wrong.png
-says "is named with both" 'other_0001.png .*turn.lua.*grid/0001.png with script grid.lua'
+exits 0 "in one sheet" sheet grid/0001.png other_0001.png -o mixed.png
+says "is named with both" 'warning: other_0001.png .*turn.lua.*grid/0001.png with script grid.lua; the sheet has file names as labels'
+exits 0 "the same with given labels" sheet grid/0001.png other_0001.png -o files.png --label '{file}'
+check "the labels are the files" cmp mixed.png files.png
 exits 0 "--force takes it" sheet grid/0001.png other_0001.png -o forced.png --force
+check "without a word" test "$(wc -l <err)" -le 1
+sed 's/frames = [0-9]*/frames = 3/' turn.lua >turn_3.lua
+mkdir -p old new
+exits 0 "a version" turn_3.lua -f 1 --size 20x15 -o old/ball.png -q
+exits 0 "a second version" turn.lua -f 1 --size 20x15 -o new/ball.png -q
+exits 0 "files of one name" sheet old/ball_0001.png new/ball_0001.png -o two.html
+check "have their folders as labels" grep -q '^"old/ball_0001.png",$' two.html
 head -c 300 grid/0002.png >cut.png
 exits 1 "a cut picture" sheet grid/0001.png cut.png -o wrong.png
 says "is named" 'cut.png: not a whole PNG'
@@ -218,6 +227,19 @@ check "with every picture" test "$(grep -c '^"data:image/png;base64,' page.html)
 check "the first being the file" cmp grid/0001.png <(sed -n 's/^"data:image\/png;base64,\(.*\)",$/\1/p' page.html | head -n 1 | base64 -d)
 check "a slider for each axis" test "$(grep -cE '^ +\{ name: "(shininess|specular)"' page.html)" -eq 2
 check "its title ends no script" test "$(grep -c '</script>' page.html)" -eq 1
+cat >over.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { radius = 1 }
+local ball = glint.sphere { center = { 0, 0, 0 }, radius = P.radius }
+return glint.animation { frames = 4, width = 8, height = 6, frame = function(t) ball.x = t end,
+  scene = glint.scene { ambient = 0.5, camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ball } }
+LUA
+exits 0 "a sweep over a film" over.lua --sweep radius=0.5,1,1.5 -o 'over_%04d.png' -q
+exits 0 "its page" sheet 'over_%04d.png' -o over.html
+check "has a slider for the frames" grep -q '{ name: "frame", values: \["1", "2", "3", "4"\] }' over.html
+check "and one for the axis" grep -q '{ name: "radius", values: \["0.5", "1", "1.5"\] }' over.html
+exits 0 "a page without a frame" sheet over_000[1-7].png -o part.html
+check "has one slider" test "$(grep -cE '^ +\{ name: ' part.html)" -eq 1
 exits 2 "a page of exact frames" sheet exact/000*.pfm -o exact.html
 
 # ---- Animated PNG ----
