@@ -40,6 +40,30 @@ static void print_order_json(FILE *out, const glintL_order *order)
     fputs("]}", out);
 }
 
+static double beyond_surfaces(const glint_ray_counts *rays)
+{
+    return (double)rays->mirror + (double)rays->refraction + (double)rays->indirect;
+}
+
+// Returns an upper bound of the shadow rays at the first hits of mirrored, refracted and indirect rays.
+static double shadow_beyond(const glint_ray_counts *rays)
+{
+    return rays->primary ? beyond_surfaces(rays) * (double)(rays->shadow / rays->primary) : 0;
+}
+
+#define MANY 64 // shadow rays beyond a surface for each sample: worth a line
+
+static void print_beyond(FILE *out, const glint_ray_counts *rays)
+{
+    const double count = shadow_beyond(rays);
+    if (count > 0)
+        fprintf(out, "  shadow     %.0f more at most where these rays hit first\n", count);
+    if (count >= MANY * (double)rays->primary)
+        fprintf(out, "             for each sample of a pixel: %.0f rays beyond the surface x %" PRIu64 " shadow rays. Fewer by reflection_samples,\n"
+                     "             indirect = { samples = ... }, or samples of a lamp\n",
+                beyond_surfaces(rays) / (double)rays->primary, rays->shadow / rays->primary);
+}
+
 static void print_for_people(FILE *out, const glintL_run *run)
 {
     const glint_effect *effects;
@@ -63,6 +87,7 @@ static void print_for_people(FILE *out, const glintL_run *run)
         fprintf(out, "  refraction %" PRIu64 " at most\n", rays.refraction);
     if (rays.indirect)
         fprintf(out, "  indirect   %" PRIu64 " at most\n", rays.indirect);
+    print_beyond(out, &rays);
     if (run->explain_order)
         print_order(out, run->explain_order);
 }
@@ -128,6 +153,7 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     }
     fputs("],", out);
     cli_print_rays(out, &rays);
+    fprintf(out, ",\"shadow_beyond\":%.0f", shadow_beyond(&rays));
     if (run->explain_order)
         print_order_json(out, run->explain_order);
     if (programs)

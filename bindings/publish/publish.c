@@ -61,7 +61,28 @@ static void add_file(publication *p, const char *path, const char *name)
     p->file_count++;
 }
 
-static void note_file(void *context, const char *path) { add_file(context, path, path); }
+// Returns what a page cannot read about a file, and the formats that it can read; NULL: nothing.
+static const char *refused_kind(const char *path)
+{
+    unsigned char first[4] = { 0 };
+    FILE *file = fopen(path, "rb");
+    if (!file || fread(first, sizeof first, 1, file) != 1)
+        memset(first, 0, sizeof first);
+    if (file)
+        fclose(file);
+    return memcmp(first, "\xff\xd8\xff", 3) == 0        ? "a JPEG, which pages cannot read: save it as .png"
+           : memcmp(first, "\x76\x2f\x31\x01", 4) == 0 ? "an OpenEXR file, which pages cannot read: save it as .hdr or .pfm"
+                                                       : NULL;
+}
+
+static void note_file(void *context, const char *path)
+{
+    publication *p = context;
+    const char *kind = refused_kind(path);
+    if (kind)
+        glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s: %.200s is %s", p->who, path, kind);
+    add_file(p, path, path);
+}
 
 // note(path, optional, module): adds a file, except glint's own modules, which the page has already.
 static int note(lua_State *L)

@@ -26,8 +26,8 @@ end
 
 -- ---- The files and their axes ----
 
--- Reads the files. Returns the pictures and, if they come from different scripts, how they differ. Returns nil, the exit
--- code and a message if one is missing or differs in size.
+-- Reads the files. Returns the pictures and, if they come from different scripts, how they differ. Returns nil, the
+-- exit code and a message if one is missing or differs in size.
 function M.read_files(sheet)
   local pictures, difference = {}, nil
   for i, path in ipairs(sheet.files) do
@@ -113,8 +113,8 @@ local function new_frame_axis(axes)
   return most > 1 and new_axis("frame", axes.cells, function(cell) return format("%d", nth[cell]) end) or nil
 end
 
--- Finds the axes: first the axes of sweeps, then the parameters, options and passes that differ. The pages of sweeps over
--- films also have an axis of frames.
+-- Finds the axes: first the axes of sweeps, then the parameters, options and passes that differ. The pages of sweeps
+-- over films also have an axis of frames.
 function M.find(sheet, pictures, is_page)
   local axes = { cells = #pictures, known = {} }
   local function texts(keyword) return function(cell) return pictures[cell][keyword] end end

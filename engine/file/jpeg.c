@@ -152,7 +152,20 @@ glint_status glint_jpeg_decode(const uint8_t *data, size_t size, size_t most, gl
         *out = picture;
     return status;
 }
+
+#define SPELLED(...) #__VA_ARGS__
+#define SPELL(...) SPELLED(__VA_ARGS__)
+const char *glint_jpeg_library(void)
+{
+#ifdef LIBJPEG_TURBO_VERSION
+    return "libjpeg-turbo " SPELL(LIBJPEG_TURBO_VERSION);
 #else
+    return "libjpeg " SPELL(JPEG_LIB_VERSION);
+#endif
+}
+#else
+const char *glint_jpeg_library(void) { return NULL; }
+
 glint_status glint_jpeg_decode(const uint8_t *data, size_t size, size_t most, glint_png *out, glint_error *error)
 {
     (void)data, (void)size, (void)most, (void)out;

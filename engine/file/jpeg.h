@@ -12,4 +12,7 @@ bool glint_is_jpeg(const uint8_t *data, size_t size);
 /// codes.
 glint_status glint_jpeg_decode(const uint8_t *data, size_t size, size_t most, glint_png *out, glint_error *error);
 
+/// Returns the library's name and version: "libjpeg-turbo 2.1.5". NULL: the build has none.
+const char *glint_jpeg_library(void);
+
 #endif

@@ -1,5 +1,6 @@
 /// The names and versions of the libraries in use.
 #include "engine/glint.h"
+#include "engine/file/jpeg.h"
 #include "engine/text/letters.h"
 
 #include <png.h>
@@ -9,7 +10,7 @@
 #include <xxhash.h>
 #include <zlib.h>
 
-#define LIBRARIES_MAX 8
+#define LIBRARIES_MAX 12
 #define NAME_SIZE 48
 
 static char names[LIBRARIES_MAX][NAME_SIZE];
@@ -20,7 +21,7 @@ static void add(const char *name)
     int count = 0;
     while (list[count] && strcmp(list[count], name) != 0)
         count++;
-    if (list[count])
+    if (list[count] || count == LIBRARIES_MAX)
         return;
     snprintf(names[count], NAME_SIZE, "%s", name);
     list[count] = names[count];
@@ -40,6 +41,8 @@ static void make_list(void)
     add(name);
     if (glint_exr_library())
         add(glint_exr_library());
+    if (glint_jpeg_library())
+        add(glint_jpeg_library());
     if (glint_letters_library())
         add(glint_letters_library());
     snprintf(name, sizeof name, "cairo %s", glint_cairo_version() ? glint_cairo_version() : "");

@@ -581,6 +581,18 @@ events() {
     valued "explain has effects" '^\.effects\.[0-9]+\.caller=.*lamp'
     valued "explain has stages" '^\.stages\.[0-9]+\.name=cast$'
     valued "explain has rays" '^\.rays\.primary=960$'
+    cat >glossy.lua <<'END'
+local glint = require "glint"
+return glint.scene { camera = glint.camera { eye = { 0, 3, 9 }, at = { 0, 0, 0 } }, reflection_samples = 8,
+  glint.disk_light { position = { 3, 6, 3 }, normal = { -1, -2, -1 }, radius = 1, samples = 16 },
+  glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { mirror = 0.4, roughness = 0.2 } } }
+END
+    exits 0 "explain a glossy floor" explain glossy.lua --size 10x8 --samples 4 # 320 samples, 8 rays each, 16 shadow rays each
+    prints "explain a glossy floor: shadows" '^  shadow     40960 more at most where these rays hit first$'
+    prints "explain a glossy floor: each" 'for each sample of a pixel: 8 rays beyond the surface x 16 shadow rays\. Fewer by reflection_samples'
+    exits 0 "explain a glossy floor, --json" explain glossy.lua --size 10x8 --samples 4 --json
+    parsed "explain a glossy floor"
+    valued "explain a glossy floor, --json" '^\.shadow_beyond=40960$'
     exits 0 "explain --programs" explain pattern.lua --json --programs
     parsed "explain --programs"
     valued "a pattern's length" '^\.programs\.[0-9]+\.instructions=[1-9]'

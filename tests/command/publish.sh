@@ -43,6 +43,18 @@ says "an unknown control" "the script has no parameter 'sizes'; its parameters a
 exits 2 "an unknown parameter" publish scene.lua -o wrong.html --set sizes=1
 exits 2 "an unknown frame" publish scene.lua -o wrong.html --frame 2
 says "an unknown frame" 'the frames of the script are 1'
+printf '\377\330\377\340' >photo.jpg
+printf '\166\057\061\001' >sky.exr
+for file in photo.jpg sky.exr; do
+    cat >texture.lua <<LUA
+local glint = require "glint"
+local ok, photo = pcall(glint.texture, { file = "$file" }) -- not a whole file: only its first bytes count here
+return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,
+  glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { diffuse = ok and photo or 0.5 } } }
+LUA
+    exits 2 "a texture that pages cannot read" publish texture.lua -o wrong.html
+    says "a texture that pages cannot read" "publish: $file is an? (JPEG|OpenEXR file), which pages cannot read: save it as"
+done
 exits 2 "no script" publish missing.lua -o wrong.html
 exits 2 "an option of other commands" publish scene.lua -o wrong.html --samples 4
 GLINT_WEB=$work/nowhere exits 2 "no engine for pages" publish scene.lua -o wrong.html
