@@ -397,6 +397,7 @@ typedef enum glint_object_kind {
     GLINT_OBJECT_CYLINDER, ///< fields of a cylinder
     GLINT_OBJECT_CONE, ///< fields of a cone
     GLINT_OBJECT_TORUS, ///< fields of a torus
+    GLINT_OBJECT_CYLINDERS, ///< fields of many cylinders
     GLINT_OBJECT_GROUP, ///< fields of a group
     GLINT_OBJECT_UNION, ///< fields of a union
     GLINT_OBJECT_INTERSECTION, ///< fields of an intersection
@@ -705,6 +706,7 @@ typedef enum glint_shape_kind {
     GLINT_SHAPE_CYLINDER, ///< `base`, `top`, `radius`
     GLINT_SHAPE_CONE, ///< `base`, `top`, the apex, `radius` at the base
     GLINT_SHAPE_TORUS, ///< `center`, `axis`, `major`, `minor`
+    GLINT_SHAPE_CYLINDERS, ///< made by glint_cylinders_create or glint_bonds_create; `capped`
     GLINT_SHAPE_GROUP, ///< a group of shapes; see glint_group_add
     GLINT_SHAPE_UNION, ///< a solid composed of parts: the points inside any of them; see glint_group_add
     GLINT_SHAPE_INTERSECTION, ///< the points inside all parts
@@ -744,7 +746,7 @@ typedef enum glint_shading {
 /// The fields of a shape. Each kind reads the fields whose comment names it, and those whose comment names no kind.
 /// Lengths in world units.
 typedef struct glint_shape_desc {
-    glint_shape_kind kind; ///< kind of the shape; glint_shape_create makes all kinds except spheres and meshes
+    glint_shape_kind kind; ///< kind of the shape; glint_shape_create makes all kinds except spheres, meshes and cylinders
     /// Retained by the shape. NULL: a material with default fields; for a part of a combined solid, the solid's
     /// material; for the solid, the material of its first part that has one. A group has none
     glint_material *material;
@@ -773,7 +775,8 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
 /// Replaces the description by a copy of the same kind; on error nothing changes.
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
 /// Returns the description; borrowed. Only these fields are defined: for GLINT_SHAPE_SPHERES kind, transform,
-/// two_sided, name and material (the first); for a mesh these and `shading`; for a group kind, transform and name;
+/// two_sided, name and material (the first); for GLINT_SHAPE_CYLINDERS these and `capped`; for a mesh these and
+/// `shading`; for a group kind, transform and name;
 /// for a combined solid these, two_sided and material. Setting `material` replaces the first material.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 /// Takes another reference; returns its argument.
@@ -784,8 +787,8 @@ void glint_shape_release(glint_shape *shape);
 /// Returns the number of materials of a shape, 1 for most shapes, and writes their list, owned by the shape.
 size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list);
 
-/// Computes a box around all spheres or vertices of a GLINT_SHAPE_SPHERES or GLINT_SHAPE_MESH shape, before its
-/// transform. Returns false and leaves the box unchanged for other kinds, whose description gives their position.
+/// Computes a box around all spheres, cylinders or vertices of a GLINT_SHAPE_SPHERES, GLINT_SHAPE_CYLINDERS or
+/// GLINT_SHAPE_MESH shape, before its transform. Returns false and leaves the box unchanged for other kinds, whose description gives their position.
 bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3]);
 
 #define GLINT_GROUP_DEPTH 64 ///< largest depth of nested groups and combined solids
@@ -830,7 +833,37 @@ typedef struct glint_spheres_desc {
 /// Makes spheres. A message names the first invalid sphere, counted from 1: "data: sphere 12: radius > 0 expected,
 /// got -1".
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
-/// Number of spheres; of triangles for a mesh; 1 for other shapes
+/// Returns x, y, z and radius of all spheres; owned by the shape. NULL for other kinds.
+const double *glint_spheres_data(const glint_shape *shape);
+/// Returns the material of each sphere, cylinder or triangle, from 0; owned by the shape. NULL: all have the first.
+const uint32_t *glint_spheres_index(const glint_shape *shape);
+/// Makes cylinders from the same description: `data` is count times base, top and radius, 7 numbers. They are capped
+/// until glint_shape_set changes it. Messages name the first invalid cylinder as glint_spheres_create does.
+glint_status glint_cylinders_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
+
+/// The atoms among which glint_bonds_create looks for bonds. All arrays are borrowed for the call.
+typedef struct glint_bonds_desc {
+    const double *points; ///< `stride` numbers for each atom; the first three are its position
+    size_t stride, count; ///< stride >= 3; number of atoms, up to 2^30
+    /// Two atoms are joined if their distance is above `closest` and not above the sum of their reaches, >= 0. NaN: the
+    /// atom has no bonds
+    const double *reach;
+    double closest;
+    double low[3], size[3]; ///< a box with periodic sides: its corner and the diagonal of its matrix; size >= 0, and
+        ///< > 0 for periodic sides
+    double xy, xz, yz; ///< tilt: x of the second side, x and y of the third
+    bool periodic[3]; ///< sides across which bonds continue; none: the box is not used
+    double radius; ///< of the cylinders; > 0
+    glint_material *const *materials; ///< as for spheres
+    size_t material_count;
+    const uint32_t *material_index; ///< material of each atom; NULL: all are 0
+} glint_bonds_desc;
+
+/// Finds pairs of atoms by their distance and makes open cylinders of them: two for each bond, from each atom to the
+/// middle, with the material of the atom. The middle is that of the nearest images. *out: NULL if there are no bonds.
+/// GLINT_ERR_INVALID names a wrong number, or a periodic side shorter than 1/8 of the longest bond.
+glint_status glint_bonds_create(const glint_bonds_desc *desc, glint_shape **out, glint_error *error);
+/// Number of spheres or cylinders; of triangles for a mesh; 1 for other shapes
 size_t glint_spheres_count(const glint_shape *shape);
 
 /// Polygons with shared vertices. A face of more than three corners is cut into triangles: as a fan from its first
@@ -1625,6 +1658,9 @@ double glint_exposure_for(double most);
 /// Reads one pixel of a stored pass; (0, 0) is the top left. One-channel passes give the same number three times.
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error);
+/// Copies all pixels of a stored pass, row by row from the top, each with the channels of the pass, to `out`, which has
+/// space for width x height x glint_pass_channels(pass) numbers.
+glint_status glint_image_floats(const glint_image *image, glint_pass pass, float *out, glint_error *error);
 
 // ---- Files --------------------------------------------------------------------------------------------------------
 
@@ -1945,6 +1981,56 @@ glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glin
 glint_status glint_apng_finish(glint_apng *apng, glint_error *error);
 /// Frees the writer; an unfinished file is removed. NULL does nothing.
 void glint_apng_destroy(glint_apng *apng);
+
+// ---- Rows of numbers in text -----------------------------------------------------------------------------------------
+
+/// A table from words to numbers, for columns of words.
+typedef struct glint_words glint_words;
+
+/// Makes an empty table; the caller destroys it.
+glint_status glint_words_create(glint_words **out, glint_error *error);
+/// Adds a word, or changes the number of a word. GLINT_ERR_INVALID: the table already has 65536 words.
+glint_status glint_words_add(glint_words *words, const char *word, size_t length, uint32_t number, glint_error *error);
+/// Frees the table. NULL: nothing.
+void glint_words_destroy(glint_words *words);
+
+/// What a field must be.
+typedef enum glint_column_kind {
+    GLINT_COLUMN_NUMBER, ///< a finite decimal number such as -1.5, 3e-7 or Fortran's 1.5D+03
+    GLINT_COLUMN_SIZE, ///< a number > 0
+    GLINT_COLUMN_VALUE, ///< a finite number, in Fortran's form only with a point; or a missing value, NaN: nan, NA, n/a,
+        ///< null, or an empty field
+    GLINT_COLUMN_WORD ///< a word of `words`
+} glint_column_kind;
+
+/// A field that is read from each row.
+typedef struct glint_column {
+    size_t field; ///< position of the field in its row, from 0
+    glint_column_kind kind; ///< what the field must be
+    double *numbers; ///< memory for the values; a missing value is NaN. NULL: the field is only checked
+    const glint_words *words; ///< GLINT_COLUMN_WORD: the table of its words
+    int64_t *indices; ///< GLINT_COLUMN_WORD: memory for the words' numbers. NULL: the field is only checked
+} glint_column;
+
+/// How the rows of a text are read.
+typedef struct glint_rows_desc {
+    char separator; ///< 0: fields are separated by spaces and tabs; otherwise by this character, and may be "quoted"
+    size_t field_count; ///< number of fields in each row; 0: any number
+    bool skips; ///< lines that are empty or begin with # are not rows
+    const glint_column *columns; ///< in the order of their fields
+    size_t column_count; ///< number of columns
+} glint_rows_desc;
+
+/// Reads up to `most` rows of a text, one per line. It stops at the first line that does not have the expected fields,
+/// at a line without a newline at its end, and after `most` rows. Numbers are the doubles nearest to their decimal
+/// form, whatever the locale.
+///
+/// used   written: the bytes of the lines read; the next line begins there.
+/// lines  written: the number of lines read, including skipped ones.
+///
+/// Returns the number of rows.
+size_t glint_rows_read(const glint_rows_desc *desc, const char *text, size_t length, size_t most, size_t *used,
+                       size_t *lines);
 
 // ---- Numbers that are the same on every machine -------------------------------------------------------------------
 

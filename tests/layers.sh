@@ -35,7 +35,8 @@ layer() {
 base=engine/base
 stages='engine/stages engine/stages/simd'
 layer engine/base
-layer engine/scene engine/stages $base
+layer engine/data $base
+layer engine/scene engine/data engine/stages $base
 layer engine/geometry engine/scene engine/stages $base
 layer engine/text $base
 layer engine/ink engine/text $base

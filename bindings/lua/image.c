@@ -246,35 +246,47 @@ static int save(lua_State *L)
     return 1;
 }
 
+// Pushes a buffer with the float32 of the pass named at 2.
+static float *push_floats(lua_State *L, const char *path, size_t *pixels, size_t *channels)
+{
+    glint_error error;
+    glintL_check_object(L, 1, GLINTL_IMAGE);
+    const glint_pass pass = check_pass(L, 2, path);
+    lua_settop(L, 1);
+    const glint_image *image = glintL_check_object(L, 1, GLINTL_IMAGE);
+    *pixels = (size_t)glint_image_width(image) * (size_t)glint_image_height(image);
+    *channels = (size_t)glint_pass_channels(pass);
+    float *out = lua_newuserdatauv(L, *pixels * *channels * sizeof *out, 0);
+    image = glintL_check_object(L, 1, GLINTL_IMAGE); // a finalizer could have closed it
+    glintL_check_status(L, path, &error, glint_image_floats(image, pass, out, &error));
+    return out;
+}
+
 // Returns the pass as float32, little endian, row by row from the top, as string.unpack and NumPy read it.
 static int bytes(lua_State *L)
 {
     luaL_Buffer out;
-    glintL_check_object(L, 1, GLINTL_IMAGE);
-    const glint_pass pass = check_pass(L, 2, "bytes.pass");
-    lua_settop(L, 1);
-    const glint_image *image = glintL_check_object(L, 1, GLINTL_IMAGE);
-    const int width = glint_image_width(image), height = glint_image_height(image);
-    const size_t channels = (size_t)glint_pass_channels(pass), row = (size_t)width * channels * 4;
-    float first[3];
-    glint_error error;
-    glintL_check_status(L, "bytes", &error, glint_image_pixel(image, pass, 0, 0, first, &error));
-    luaL_buffinitsize(L, &out, row * (size_t)height);
-    for (int y = 0; y < height; y++) {
-        char *to = luaL_prepbuffsize(&out, row);
-        for (int x = 0; x < width; x++) {
-            float values[3];
-            glint_image_pixel(image, pass, x, y, values, &error);
-            for (size_t c = 0; c < channels; c++)
-                to = glintL_put_float(to, values[c]);
-        }
-        luaL_addsize(&out, row);
-    }
-    luaL_pushresult(&out);
+    size_t pixels, channels;
+    const float *values = push_floats(L, "bytes.pass", &pixels, &channels);
+    char *to = luaL_buffinitsize(L, &out, pixels * channels * 4);
+    for (size_t i = 0; i < pixels * channels; i++)
+        to = glintL_put_float(to, values[i]);
+    luaL_pushresultsize(&out, pixels * channels * 4);
     return 1;
 }
 
-static const luaL_Reg METHODS[] = { { "bytes", bytes }, { "pixel", pixel }, { "save", save }, { NULL, NULL } };
+// Returns the pass as an array with a row for each pixel, row by row of the picture from the top.
+static int to_array(lua_State *L)
+{
+    size_t pixels, channels;
+    const float *values = push_floats(L, "array.pass", &pixels, &channels);
+    glintL_array *out = glintL_push_array(L, pixels, channels, false);
+    for (size_t i = 0; i < pixels * channels; i++)
+        out->numbers[i] = values[i];
+    return 1;
+}
+
+static const luaL_Reg METHODS[] = { { "array", to_array }, { "bytes", bytes }, { "pixel", pixel }, { "save", save }, { NULL, NULL } };
 
 static const glintL_class CLASS = {
     .type = GLINTL_IMAGE,

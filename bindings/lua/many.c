@@ -46,12 +46,21 @@ static void read_packed(lua_State *L, const glintL_many *many, size_t count, siz
     }
 }
 
+static void read_array(lua_State *L, const glintL_many *many, const glintL_array *array, size_t material_count, uint32_t *out)
+{
+    for (size_t i = 0; i < array->count; i++)
+        out[i] = checked(L, many, i, array->wholes[i], material_count);
+}
+
 static void check_size(lua_State *L, const glintL_many *many, size_t expected)
 {
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s.index", many->object);
-    if (lua_istable(L, many->index)) {
-        const size_t count = glintL_check_list(L, many->index, path, false);
+    const glintL_array *array = glintL_to_array(L, many->index);
+    if (array && (!array->is_whole || array->width != 1))
+        glintL_refuse(L, many->index, path, "array of whole numbers");
+    if (lua_istable(L, many->index) || array) {
+        const size_t count = array ? array->count : glintL_check_list(L, many->index, path, false);
         if (count != expected)
             glintL_error(L, "%s: %I numbers (one a %s) expected, got %I", path, (LUAI_UACINT)expected, many->each,
                          (LUAI_UACINT)count);
@@ -61,7 +70,7 @@ static void check_size(lua_State *L, const glintL_many *many, size_t expected)
             glintL_error(L, "%s: %I bytes (a u32 a %s) expected, got %I bytes", path,
                          (LUAI_UACINT)(expected * sizeof(uint32_t)), many->each, (LUAI_UACINT)bytes);
     } else {
-        glintL_refuse(L, many->index, path, "table or packed string of numbers");
+        glintL_refuse(L, many->index, path, "array, table or packed string of numbers");
     }
 }
 
@@ -75,7 +84,10 @@ const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t 
     check_size(L, many, count);
     uint32_t *out = lua_newuserdatauv(L, (count + 1) * sizeof *out, 0);
     lua_replace(L, many->index_buffer);
-    if (lua_istable(L, many->index))
+    const glintL_array *array = glintL_to_array(L, many->index);
+    if (array)
+        read_array(L, many, array, material_count, out);
+    else if (lua_istable(L, many->index))
         read_list(L, many, count, material_count, out);
     else
         read_packed(L, many, count, material_count, out);

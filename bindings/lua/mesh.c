@@ -173,13 +173,18 @@ static double *read_packed_points(lua_State *L, const arguments *a, int index, c
 static double *read_points(lua_State *L, const arguments *a, int index, const entry_kind *kind, int buffer,
                            size_t *count)
 {
-    char path[32] = "mesh.", expected[64];
+    char path[32] = "mesh.", expected[80];
+    const glintL_array *array = glintL_to_array(L, index);
+    if (array && !array->is_whole && array->width == (uint32_t)kind->size) {
+        *count = array->count;
+        return array->numbers; // `index` keeps the array
+    }
     if (lua_istable(L, index))
         return read_point_list(L, index, kind, buffer, count);
     if (lua_type(L, index) == LUA_TSTRING)
         return read_packed_points(L, a, index, kind, buffer, count);
     strcat(path, kind->name);
-    snprintf(expected, sizeof expected, "list of %s, flat table or packed string", kind->form);
+    snprintf(expected, sizeof expected, "list of %s, array of such rows, flat table or packed string", kind->form);
     glintL_refuse(L, index, path, expected);
     return NULL;
 }

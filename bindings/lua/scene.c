@@ -237,7 +237,7 @@ static int cast(lua_State *L)
         return 1; // nil
     const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
     const glint_shape_kind kind = shape ? glint_shape_get(shape)->kind : GLINT_SHAPE_SPHERE;
-    bool numbered = kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_MESH || kind >= GLINT_SHAPE_UNION;
+    bool numbered = kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_CYLINDERS || kind == GLINT_SHAPE_MESH || kind >= GLINT_SHAPE_UNION;
     lua_createtable(L, 0, 5);
     lua_insert(L, -2);
     lua_setfield(L, -2, "object");

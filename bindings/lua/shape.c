@@ -1,5 +1,5 @@
 // glint.sphere, plane, box, disk, cylinder, cone, torus, group, union, intersection and difference; also the fields of
-// glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
+// glint.spheres, glint.cylinders and glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
 #include "bindings/value/glintL.h"
@@ -74,6 +74,7 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .kind = GLINT_OBJECT_CYLINDER },
     [GLINT_SHAPE_CONE] = { .name = "cone", .kind = GLINT_OBJECT_CONE },
     [GLINT_SHAPE_TORUS] = { .name = "torus", .kind = GLINT_OBJECT_TORUS, .place = "center" },
+    [GLINT_SHAPE_CYLINDERS] = { .name = "cylinders", .kind = GLINT_OBJECT_CYLINDERS, .getters = MANY_GETTERS },
     [GLINT_SHAPE_GROUP] = { .name = "group", .kind = GLINT_OBJECT_GROUP, COLLECTION },
     [GLINT_SHAPE_UNION] = { .name = "union", .kind = GLINT_OBJECT_UNION, COLLECTION },
     [GLINT_SHAPE_INTERSECTION] = { .name = "intersection", .kind = GLINT_OBJECT_INTERSECTION, COLLECTION },
@@ -94,12 +95,12 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
     (void)desc;
     if (field->type != GLINT_TYPE_OBJECT)
         return;
+    const char *name = variant(glintL_check_object(L, 1, GLINTL_SHAPE))->name;
+    const bool is_mesh = strcmp(name, "mesh") == 0;
     push_kept_list(L);
     if (!lua_isnil(L, -1))
-        glintL_error(L, "%s a list of materials; change the fields of the materials in the list",
-                     glint_shape_get(glintL_check_object(L, 1, GLINTL_SHAPE))->kind == GLINT_SHAPE_MESH
-                         ? "mesh.material: this mesh has"
-                         : "spheres.material: these spheres have");
+        glintL_error(L, "%s.material: %s %s a list of materials; change the fields of the materials in the list", name,
+                     is_mesh ? "this mesh" : lua_pushfstring(L, "these %s", name), is_mesh ? "has" : "have");
     lua_pop(L, 1);
 }
 
@@ -133,6 +134,8 @@ void glintL_open_shape(lua_State *L)
 {
     static const luaL_Reg others[] = {
         { "spheres", glintL_new_spheres },
+        { "cylinders", glintL_new_cylinders },
+        { "_bonds", glintL_new_bonds },
         { "mesh", glintL_new_mesh },
         { "sphere_mesh", glintL_new_sphere_mesh },
         { NULL, NULL },

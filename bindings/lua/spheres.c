@@ -1,9 +1,10 @@
-// The constructor glint.spheres: many spheres from a flat table or a packed string.
+// The constructors glint.spheres and glint.cylinders: many of them from an array, a flat table or a packed string.
+#include <stdio.h>
 #include <string.h>
 
 #include "bindings/lua/many.h"
 
-#define SPHERES_MAX ((size_t)1 << 30)
+#define ITEMS_MAX ((size_t)1 << 30)
 
 typedef enum format { FORMAT_NONE, FORMAT_F32, FORMAT_F64 } format;
 
@@ -11,11 +12,17 @@ typedef struct arguments {
     glint_spheres_desc desc;
     format format;
     glint_transform transform;
+    bool capped;
+    const glintL_many *many;
+    size_t numbers; // of each sphere or cylinder
+    const char *names; // of these numbers
 } arguments;
 
 static const char *const FORMATS[] = { "none", "f32", "f64", NULL };
 
+// The first one is a field of cylinders only.
 static const glintL_field FIELDS[] = {
+    { .name = "capped", .type = GLINT_TYPE_FLAG, .offset = offsetof(arguments, capped) },
     { .name = "data", .type = GLINT_TYPE_OTHER },
     { .name = "format", .type = GLINT_TYPE_OTHER },
     { .name = "material", .type = GLINT_TYPE_OTHER },
@@ -30,14 +37,10 @@ static const glintL_field FIELDS[] = {
 // Stack positions of the constructor: the argument, the box, then the argument's fields and a buffer for each.
 enum { ARGUMENT = 1, BOX, DATA, DATA_BUFFER, FORMAT, INDEX, INDEX_BUFFER, MATERIAL, MATERIALS, POINTERS, KEPT };
 
-static const glintL_many MANY = { .object = "spheres",
-                                  .each = "sphere",
-                                  .material = MATERIAL,
-                                  .materials = MATERIALS,
-                                  .index = INDEX,
-                                  .index_buffer = INDEX_BUFFER,
-                                  .pointers = POINTERS,
-                                  .kept = KEPT };
+#define PLACES \
+    .material = MATERIAL, .materials = MATERIALS, .index = INDEX, .index_buffer = INDEX_BUFFER, .pointers = POINTERS, .kept = KEPT
+static const glintL_many SPHERES = { .object = "spheres", .each = "sphere", PLACES };
+static const glintL_many CYLINDERS = { .object = "cylinders", .each = "cylinder", PLACES };
 
 static void read_format(lua_State *L, arguments *a)
 {
@@ -49,78 +52,117 @@ static void read_format(lua_State *L, arguments *a)
     };
     glintL_many_fetch(L, "format", FORMAT);
     if (lua_isstring(L, DATA)) {
-        glintL_read_field(L, FORMAT, "spheres", &field, a);
+        glintL_read_field(L, FORMAT, a->many->object, &field, a);
         a->format = a->format == 0 ? FORMAT_F32 : FORMAT_F64;
     } else if (!lua_isnil(L, FORMAT)) {
-        glintL_error(L, "spheres.format: only packed data has a format");
+        glintL_error(L, "%s.format: only packed data has a format", a->many->object);
     }
 }
 
 static void read_packed(lua_State *L, arguments *a)
 {
-    size_t bytes, record = 4 * (a->format == FORMAT_F32 ? sizeof(float) : sizeof(double));
+    size_t bytes, record = a->numbers * (a->format == FORMAT_F32 ? sizeof(float) : sizeof(double));
     a->desc.data = lua_tolstring(L, DATA, &bytes);
     if (bytes % record != 0 || bytes == 0)
-        glintL_error(L, "spheres.data: %d bytes a sphere (x, y, z, radius in %s) expected, got %I bytes", (int)record,
-                     FORMATS[a->format], (LUAI_UACINT)bytes);
+        glintL_error(L, "%s.data: %d bytes a %s (%s in %s) expected, got %I bytes", a->many->object, (int)record,
+                     a->many->each, a->names, FORMATS[a->format], (LUAI_UACINT)bytes);
     a->desc.count = bytes / record;
     a->desc.is_float = a->format == FORMAT_F32;
 }
 
+static void check_count(lua_State *L, const arguments *a, size_t count)
+{
+    if (count % a->numbers != 0 || count == 0 || count / a->numbers > ITEMS_MAX)
+        glintL_error(L, "%s.data: %d numbers a %s (%s) expected, got %I numbers", a->many->object, (int)a->numbers, a->many->each,
+                     a->names, (LUAI_UACINT)count);
+}
+
+static void read_array(lua_State *L, arguments *a, const glintL_array *array)
+{
+    if (array->is_whole || (array->width != 1 && array->width != a->numbers))
+        glintL_error(L, "%s.data: array of %d numbers a row (%s) expected, got %I %s", a->many->object, (int)a->numbers, a->names,
+                     (LUAI_UACINT)array->width, array->is_whole ? "integers" : "numbers");
+    check_count(L, a, array->count * array->width);
+    a->desc.data = array->numbers;
+    a->desc.count = array->count * array->width / a->numbers;
+}
+
 static void read_list(lua_State *L, arguments *a)
 {
-    size_t count = glintL_check_list(L, DATA, "spheres.data", false);
-    if (count % 4 != 0 || count == 0 || count / 4 > SPHERES_MAX)
-        glintL_error(L, "spheres.data: 4 numbers a sphere (x, y, z, radius) expected, got %I numbers",
-                     (LUAI_UACINT)count);
+    char path[32];
+    snprintf(path, sizeof path, "%s.data", a->many->object);
+    const size_t count = glintL_check_list(L, DATA, path, false);
+    check_count(L, a, count);
     double *out = lua_newuserdatauv(L, count * sizeof *out, 0);
     lua_replace(L, DATA_BUFFER);
     for (size_t i = 0; i < count; i++) {
         if (lua_rawgeti(L, DATA, (lua_Integer)i + 1) != LUA_TNUMBER) {
             const char *got = glintL_push_spelling(L, -1);
-            glintL_error(L, "spheres.data[%I]: number expected, got %s", (LUAI_UACINT)i + 1, got);
+            glintL_error(L, "%s[%I]: number expected, got %s", path, (LUAI_UACINT)i + 1, got);
         }
         out[i] = lua_tonumber(L, -1);
         lua_pop(L, 1);
     }
     a->desc.data = out;
-    a->desc.count = count / 4;
+    a->desc.count = count / a->numbers;
 }
 
 static void read_data(lua_State *L, arguments *a)
 {
+    char path[32], expected[96];
     glintL_many_fetch(L, "data", DATA);
-    if (lua_type(L, DATA) != LUA_TSTRING && !lua_istable(L, DATA))
-        glintL_refuse(L, DATA, "spheres.data", "flat table or packed string of x, y, z, radius");
+    const glintL_array *array = glintL_to_array(L, DATA);
+    snprintf(path, sizeof path, "%s.data", a->many->object);
+    snprintf(expected, sizeof expected, "array, flat table or packed string of %s", a->names);
+    if (lua_type(L, DATA) != LUA_TSTRING && !lua_istable(L, DATA) && !array)
+        glintL_refuse(L, DATA, path, expected);
     read_format(L, a);
-    if (lua_istable(L, DATA))
+    if (array)
+        read_array(L, a, array);
+    else if (lua_istable(L, DATA))
         read_list(L, a);
     else
         read_packed(L, a);
 }
 
-int glintL_new_spheres(lua_State *L)
+static int make(lua_State *L, arguments *a, const glintL_field *fields,
+                glint_status (*create)(const glint_spheres_desc *desc, glint_shape **out, glint_error *error))
 {
-    arguments a = { .desc = { .two_sided = true }, .transform = glint_transform_identity() };
+    const glintL_many *many = a->many;
     glint_shape *shape = NULL;
     glint_error error;
     lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
     lua_settop(L, KEPT);
-    glintL_read_table(L, ARGUMENT, "spheres", FIELDS, &a, false);
-    glint_material **pointers = glintL_many_prepare(L, &MANY, &a.desc.material_count);
-    read_data(L, &a);
-    a.desc.material_index = glintL_many_index(L, &MANY, a.desc.count, a.desc.material_count);
-    glintL_many_read(L, &MANY, a.desc.material_count, pointers);
-    a.desc.materials = pointers;
-    glintL_check_status(L, "spheres", &error, glint_spheres_create(&a.desc, &shape, &error));
+    a->desc.two_sided = a->capped = true;
+    a->transform = glint_transform_identity();
+    glintL_read_table(L, ARGUMENT, many->object, fields, a, false);
+    glint_material **pointers = glintL_many_prepare(L, many, &a->desc.material_count);
+    read_data(L, a);
+    a->desc.material_index = glintL_many_index(L, many, a->desc.count, a->desc.material_count);
+    glintL_many_read(L, many, a->desc.material_count, pointers);
+    a->desc.materials = pointers;
+    glintL_check_status(L, many->object, &error, create(&a->desc, &shape, &error));
     box->object = shape;
     glint_shape_desc placed = *glint_shape_get(shape);
-    placed.transform = a.transform;
-    glintL_check_status(L, "spheres", &error, glint_shape_set(shape, &placed, &error));
-    glintL_many_keep(L, &MANY, BOX);
+    placed.transform = a->transform;
+    placed.capped = a->capped;
+    glintL_check_status(L, many->object, &error, glint_shape_set(shape, &placed, &error));
+    glintL_many_keep(L, many, BOX);
     lua_settop(L, BOX);
     glintL_remember(L, shape);
-    glintL_charge(L, a.desc.count * 4 * sizeof(double));
+    glintL_charge(L, a->desc.count * a->numbers * sizeof(double));
     return 1;
+}
+
+int glintL_new_spheres(lua_State *L)
+{
+    arguments a = { .many = &SPHERES, .numbers = 4, .names = "x, y, z, radius" };
+    return make(L, &a, FIELDS + 1, glint_spheres_create);
+}
+
+int glintL_new_cylinders(lua_State *L)
+{
+    arguments a = { .many = &CYLINDERS, .numbers = 7, .names = "base, top, radius" };
+    return make(L, &a, FIELDS, glint_cylinders_create);
 }

@@ -167,6 +167,91 @@ function glint.polygon_light(fields) end
 ---@return glint.sphere_light
 function glint.sphere_light(fields) end
 
+-- ---- Arrays ----
+
+--- A block of numbers in rows; each row has one number, or `width` numbers. Reading and writing beyond the rows raises, only
+--- a[#a + 1] is nil. `a + b`, `a - b`, `a * b`, `a / b` and `-a` work by element: b is an array of the same size, a number, or one number for
+--- each column.
+---@class glint.array
+---@field [integer] number|glint.vector|number[]  a row: a number; of three numbers a vector; otherwise a list
+---@field width integer  numbers of a row; read-only
+---@field x glint.array  a copy of the first column; read-only, as y and z are, and r, g, b for the same columns
+---@field y glint.array
+---@field z glint.array
+---@field r glint.array
+---@field g glint.array
+---@field b glint.array
+---@operator add(any): glint.array
+---@operator sub(any): glint.array
+---@operator mul(any): glint.array
+---@operator div(any): glint.array
+---@operator unm: glint.array
+local array = {}
+
+--- Returns the rows with these numbers, in their order.
+---@param rows glint.array  integers
+---@return glint.array
+function array:at(rows) end
+
+--- Returns which of `count` equal parts of low .. high each number is in, from 1: the nearest one beyond them, count + 1 for NaN.
+---@param low number
+---@param high number
+---@param count integer
+---@return glint.array
+function array:bins(low, high, count) end
+
+--- Returns a copy of a column.
+---@param number integer  1 .. width
+---@return glint.array
+function array:column(number) end
+
+--- Returns how often each whole number occurs, by number.
+---@return table<integer, integer>
+function array:counts() end
+
+--- Returns the greatest whole numbers that are not above the numbers.
+---@return glint.array
+function array:floor() end
+
+--- Returns the results of a pattern, or of a function that could be one, for all rows. The function has the number, or the
+--- row of two or three columns as a point.
+---@param f glint.pattern|fun(x: any): any
+---@return glint.array
+function array:map(f) end
+
+--- Returns the largest number, or one for each column. Leaves out NaN.
+---@return number|glint.vector|number[]
+function array:max() end
+
+--- Returns the mean, or one for each column.
+---@return number|glint.vector|number[]
+function array:mean() end
+
+--- Returns the smallest number, or one for each column. Leaves out NaN.
+---@return number|glint.vector|number[]
+function array:min() end
+
+--- Returns a copy of some rows.
+---@param first? integer  negative: from the end. Default 1
+---@param last? integer  negative: from the end. Default #array
+---@param step? integer  Default 1
+---@return glint.array
+function array:slice(first, last, step) end
+
+--- Returns the sum, or one for each column; of numbers with the terms that plain addition loses.
+---@return number|glint.vector|number[]
+function array:sum() end
+
+--- Returns a list of all rows.
+---@return table
+function array:table() end
+
+--- Makes an array of a list of numbers or rows, of arrays of one column, which become its columns, or of zeros.
+---@param from number[]|number[][]|glint.array[]|integer  integer: the number of zeros
+---@param kind? "number"|"integer"  Default "number": double precision
+---@return glint.array
+function glint.array(from, kind) end
+
 -- ---- Camera ----
 
 ---@class glint.camera_fields
@@ -193,7 +278,7 @@ function glint.camera(fields) end
 ---@class glint.shape_fields
 ---@fields spheres
 
----@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group|glint.union|glint.intersection|glint.difference
+---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.cylinders|glint.group|glint.union|glint.intersection|glint.difference
 
 --- An affine map, immutable. `a * b` applies b first, then a; `a * {x, y, z}` is the image of a point. Maps are equal
 --- when all their numbers are. `a[1]` to `a[12]` are the numbers that glint.matrix takes.
@@ -247,12 +332,12 @@ function glint.sphere(fields) end
 ---@return glint.plane
 function glint.plane(fields) end
 
---- Many spheres in one shape, copied once from one array.
+--- Many spheres in one shape, copied once.
 ---@class glint.spheres_fields: glint.shape_fields
----@field data number[]|string  x, y, z, radius of each sphere: a flat table, or packed numbers in native byte order
+---@field data glint.array|number[]|string  x, y, z, radius of each sphere: an array with four columns or one, a flat table, or packed numbers in native byte order
 ---@field format? "f32"|"f64"  number format of packed data; required for packed data, otherwise refused
 ---@field materials? glint.material[]  instead of `material`, with `index`
----@field index? integer[]|string  which of `materials` each sphere has, from 1: a table, or packed u32 numbers
+---@field index? glint.array|integer[]|string  which of `materials` each sphere has, from 1: an array of integers, a table, or packed u32 numbers
 
 ---@class glint.spheres: glint.shape_fields, glint.object
 ---@field count integer  number of spheres; read-only
@@ -263,6 +348,25 @@ function glint.plane(fields) end
 ---@param fields glint.spheres_fields
 ---@return glint.spheres
 function glint.spheres(fields) end
+
+--- Many cylinders in one shape, copied once. Their patterns read p, not uv.
+---@class glint.cylinders_fields: glint.shape_fields
+---@field data glint.array|number[]|string  base, top and radius of each cylinder, 7 numbers, in the forms that spheres have
+---@field format? "f32"|"f64"  as for spheres
+---@field capped? boolean  closed at both ends. Default true
+---@field materials? glint.material[]  as for spheres
+---@field index? glint.array|integer[]|string  as for spheres
+
+---@class glint.cylinders: glint.shape_fields, glint.object
+---@field capped boolean  closed at both ends
+---@field count integer  number of cylinders; read-only
+---@field materials glint.material[]  a new list of the materials; read-only
+---@field min glint.vector  as of spheres; read-only
+---@field max glint.vector  as of spheres; read-only
+
+---@param fields glint.cylinders_fields
+---@return glint.cylinders
+function glint.cylinders(fields) end
 
 ---@alias glint.shading
 ---| "faceted"  # shaded per sample, with the normal of the face
@@ -753,6 +857,11 @@ function image:pixel(x, y, pass) end
 ---@return string
 function image:bytes(pass) end
 
+--- Returns a pass as an array with a row for each pixel, from the top left, row by row of the picture.
+---@param pass? glint.pass  Default "beauty"
+---@return glint.array
+function image:array(pass) end
+
 --- Writes a .png, .svg, .pdf, .pfm, .npy or .exr, which appears whole or not at all. Missing folders are made. Wrong use raises; a
 --- failure to write the file returns nil and a message.
 ---@param path string
@@ -990,7 +1099,7 @@ function glint.texture(fields) end
 ---@param high? number  the value of the last colour, different from low. Default 1
 ---@param scale? "linear"|"log"  "log": equal ratios are equal steps of colour; low and high must be above 0. Default "linear"
 ---@param missing? glint.color  colour of a missing value, NaN. Default "#808080"
----@return fun(x: number): glint.vector
+---@return fun(x: number|glint.array): glint.vector|glint.array  an array of numbers gives an array of colours
 function glint.colormap(map, low, high, scale, missing) end
 
 -- ---- Operations ----

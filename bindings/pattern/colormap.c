@@ -133,6 +133,38 @@ static bool is_missing(lua_State *L)
     return lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TNUMBER && isnan(lua_tonumber(L, 1));
 }
 
+// Returns the texture's coordinate u for a number.
+static glintL_term place_of(lua_State *L, glintL_term share, double low, double high)
+{
+    if (lua_toboolean(L, lua_upvalueindex(4))) // low and high are logarithms already
+        share = glintL_apply1(L, GLINT_OP_LOG2, share);
+    if (low != 0)
+        share = glintL_apply2(L, GLINT_OP_SUB, share, glintL_number_term(low));
+    if (low != 0 || high != 1)
+        share = glintL_apply2(L, GLINT_OP_DIV, share, glintL_number_term(high - low));
+    return glintL_apply3(L, GLINT_OP_MULADD, share, glintL_number_term((ENTRIES - 1.0) / ENTRIES),
+                         glintL_number_term(0.5 / ENTRIES));
+}
+
+// Returns the colours of all numbers of the array at 1, which has one column.
+static int colors_of(lua_State *L, const glint_texture *texture, double low, double high)
+{
+    const glintL_array *a = glintL_to_array(L, 1);
+    if (a->width != 1)
+        return glintL_error(L, "colormap: array of one column expected, got %I columns", (LUAI_UACINT)a->width);
+    const double *missing = glintL_to_vector(L, lua_upvalueindex(5));
+    glintL_array *out = glintL_push_array(L, a->count, 3, false);
+    glintL_term in[3] = { [1] = glintL_number_term(0.5), [2] = glintL_number_term(0) }, color[4];
+    for (size_t i = 0; i < a->count; i++) {
+        const double number = a->is_whole ? (double)a->wholes[i] : a->numbers[i];
+        in[0] = place_of(L, glintL_number_term(number), low, high);
+        glintL_apply_texture(L, texture, in, color);
+        for (int c = 0; c < 3; c++)
+            out->numbers[3 * i + (size_t)c] = isnan(number) ? missing[c] : color[c].number;
+    }
+    return 1;
+}
+
 // Returns the colour of a number. Upvalues: the texture, the ends of its range, whether it is logarithmic, and the
 // colour of missing values. The ends of the range are at the centres of the first and last texel. Values beyond them
 // get the colour of the nearer end.
@@ -144,18 +176,12 @@ static int color_of(lua_State *L)
         lua_pushvalue(L, lua_upvalueindex(5));
         return 1;
     }
+    if (glintL_to_array(L, 1))
+        return colors_of(L, *texture, low, high);
     glintL_term in[3] = { [1] = glintL_number_term(0.5), [2] = glintL_number_term(0) }, out[4];
     if (lua_gettop(L) != 1)
         return glintL_error(L, "colormap: one number or symbol expected, got %d values", lua_gettop(L));
-    glintL_term share = glintL_read_term(L, 1, "colormap");
-    if (lua_toboolean(L, lua_upvalueindex(4))) // low and high are logarithms already
-        share = glintL_apply1(L, GLINT_OP_LOG2, share);
-    if (low != 0)
-        share = glintL_apply2(L, GLINT_OP_SUB, share, glintL_number_term(low));
-    if (low != 0 || high != 1)
-        share = glintL_apply2(L, GLINT_OP_DIV, share, glintL_number_term(high - low));
-    in[0] = glintL_apply3(L, GLINT_OP_MULADD, share, glintL_number_term((ENTRIES - 1.0) / ENTRIES),
-                          glintL_number_term(0.5 / ENTRIES));
+    in[0] = place_of(L, glintL_read_term(L, 1, "colormap"), low, high);
     glintL_apply_texture(L, *texture, in, out);
     glintL_push_triple(L, out);
     return 1;

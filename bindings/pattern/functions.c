@@ -91,6 +91,42 @@ int glintL_pattern_evaluate(lua_State *L)
     return 1;
 }
 
+// array:map(f): the results of a pattern, or of a function that could be one, for all rows. The function has the row; of
+// an array with one column, the number.
+int glintL_map_array(lua_State *L)
+{
+    double inputs[GLINT_INPUT_COUNT] = { 0 };
+    glint_error error;
+    lua_settop(L, 2);
+    const glintL_array *a = glintL_to_array(L, 1);
+    if (!a || a->width > 3)
+        return glintL_refuse(L, 1, "array.map", "array of 1 to 3 columns");
+    if (lua_isfunction(L, 2)) {
+        if (a->width == 1) {
+            if (luaL_loadstring(L, "local f = ... return function(p) return f(p.x) end"))
+                return lua_error(L);
+            lua_pushvalue(L, 2);
+            lua_call(L, 1, 1);
+            lua_replace(L, 2);
+        }
+        glintL_push_pattern(L, GLINT_PROGRAM_PATTERN, GLINTL_PATTERN);
+        lua_pushvalue(L, 2);
+        lua_setiuservalue(L, -2, 1);
+        lua_replace(L, 2);
+    } else if (!glintL_is_source(L, 2, false))
+        return glintL_refuse(L, 2, "array.map", "function or pattern");
+    const glint_program *program = glintL_make_program(L, 2, false)->program;
+    glintL_array *out = glintL_push_array(L, a->count, glint_program_output_count(program), false);
+    for (size_t i = 0; i < a->count; i++) {
+        for (size_t c = 0; c < a->width; c++) {
+            const size_t at = i * a->width + c;
+            inputs[GLINT_INPUT_P_X + c] = a->is_whole ? (double)a->wholes[at] : a->numbers[at];
+        }
+        glintL_check_status(L, "array.map", &error, glint_program_evaluate(program, inputs, out->numbers + i * out->width, &error));
+    }
+    return 1;
+}
+
 static int count_instructions(lua_State *L)
 {
     check_self(L);

@@ -148,6 +148,7 @@ typedef struct glintL_pattern {
 glintL_pattern *glintL_to_pattern(lua_State *L, int index);
 glintL_pattern *glintL_push_pattern(lua_State *L, glint_program_kind kind, const char *type);
 int glintL_pattern_evaluate(lua_State *L); ///< the method `evaluate`
+int glintL_map_array(lua_State *L); ///< the method `map` of arrays
 
 // ---- texture.c ----
 

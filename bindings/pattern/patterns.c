@@ -18,6 +18,7 @@ const glintL_tracing glintL_patterns = {
     .keep = glintL_keep_source,
     .keep_closed = glintL_keep_closed,
     .methods = METHODS,
+    .map_array = glintL_map_array,
 };
 
 void glintL_open_patterns(lua_State *L)

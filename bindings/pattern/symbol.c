@@ -59,6 +59,8 @@ static int apply_operator(lua_State *L, glint_op op)
         [GLINT_OP_MOD] = "a % b", [GLINT_OP_POW] = "a ^ b", [GLINT_OP_FLOOR] = "a // b",
     };
     glintL_operand a, b, result;
+    if (glintL_to_array(L, 2) && op <= GLINT_OP_DIV) // vector + array
+        return glintL_array_operate(L, op == GLINT_OP_ADD ? LUA_OPADD : op == GLINT_OP_SUB ? LUA_OPSUB : op == GLINT_OP_MUL ? LUA_OPMUL : LUA_OPDIV);
     for (int i = 1; i <= 2; i++)
         if (lua_type(L, i) == LUA_TSTRING) // Lua would convert "1" to a number
             glintL_refuse(L, i, signs[op], "number, symbol or vector");

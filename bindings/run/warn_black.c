@@ -65,7 +65,7 @@ static bool is_inside(const glint_camera_desc *camera, const glint_hit *hit)
     for (int c = 0; c < 3; c++)
         out += (hit->point[c] - camera->eye[c]) * hit->normal[c];
     return out > 0 && (kind == GLINT_SHAPE_SPHERE || kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_BOX ||
-                       kind == GLINT_SHAPE_CYLINDER || kind == GLINT_SHAPE_CONE || kind == GLINT_SHAPE_TORUS ||
+                       kind == GLINT_SHAPE_CYLINDER || kind == GLINT_SHAPE_CONE || kind == GLINT_SHAPE_TORUS || kind == GLINT_SHAPE_CYLINDERS ||
                        kind >= GLINT_SHAPE_UNION);
 }
 

@@ -302,13 +302,14 @@ static void describe(const glint_shape_desc *shape, const ball *b, char out[160]
     static const char *const names[] = {
         [GLINT_SHAPE_SPHERE] = "sphere", [GLINT_SHAPE_SPHERES] = "set of spheres", [GLINT_SHAPE_MESH] = "mesh",
         [GLINT_SHAPE_BOX] = "box",       [GLINT_SHAPE_DISK] = "disk",       [GLINT_SHAPE_CYLINDER] = "cylinder",
-        [GLINT_SHAPE_CONE] = "cone",     [GLINT_SHAPE_TORUS] = "torus"
+        [GLINT_SHAPE_CONE] = "cone",     [GLINT_SHAPE_TORUS] = "torus",     [GLINT_SHAPE_CYLINDERS] = "set of cylinders"
     };
     if (*shape->name)
         snprintf(out, 160, "%s '%s'", names[shape->kind], shape->name);
     else
         snprintf(out, 160, "the %s %s {%g, %g, %g}", names[shape->kind],
-                 shape->kind == GLINT_SHAPE_SPHERES || shape->kind == GLINT_SHAPE_MESH ? "around" : "at", b->center[0],
+                 shape->kind == GLINT_SHAPE_SPHERES || shape->kind == GLINT_SHAPE_CYLINDERS || shape->kind == GLINT_SHAPE_MESH
+                     ? "around" : "at", b->center[0],
                  b->center[1], b->center[2]);
 }
 

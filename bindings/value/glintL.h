@@ -102,6 +102,27 @@ void glintL_push_texel(lua_State *L, const double v[4]);
 const double *glintL_to_vector(lua_State *L, int index);
 int glintL_unpack(lua_State *L); ///< the method `unpack`
 
+// ---- array.c: blocks of numbers ----
+
+#define GLINTL_ARRAY "glint.array"
+
+/// A userdata with its numbers behind it, row by row. Lua's allocator counts all its memory.
+typedef struct glintL_array {
+    size_t count; ///< number of rows
+    uint32_t width; ///< numbers of a row, >= 1
+    bool is_whole; ///< the numbers are in `wholes`, otherwise in `numbers`
+    double *numbers;
+    int64_t *wholes;
+} glintL_array;
+
+/// Returns NULL if the value at index is not an array.
+glintL_array *glintL_to_array(lua_State *L, int index);
+/// Pushes an array whose numbers are not set.
+glintL_array *glintL_push_array(lua_State *L, size_t count, size_t width, bool is_whole);
+/// Pushes the result of an operator (LUA_OPADD, _OPSUB, _OPMUL or _OPDIV) of the values at 1 and 2, one of them an array.
+int glintL_array_operate(lua_State *L, int op);
+void glintL_open_array(lua_State *L);
+
 // ---- dual.c: numbers with their derivatives by variables ----
 
 #define GLINTL_VARIABLES_MAX 32 ///< maximum number of variables in one script
@@ -175,6 +196,7 @@ typedef struct glintL_tracing {
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
     void (*keep_closed)(lua_State *L, int index);
     const luaL_Reg *methods; ///< methods of vectors; ended by a NULL name
+    lua_CFunction map_array; ///< the method `map` of arrays
 } glintL_tracing;
 
 extern const glintL_tracing glintL_patterns; ///< bindings/pattern/patterns.c
@@ -387,11 +409,15 @@ int luaopen_glint(lua_State *L);
 void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 /// picture.c: glint.read_image.
 void glintL_open_picture(lua_State *L);
+/// rows.c: glint._row_reader, the reader of rows of text.
+void glintL_open_rows(lua_State *L);
 /// Writes the four bytes of a float32, little endian; returns the position after them.
 char *glintL_put_float(char *to, float value);
 
-/// The constructor glint.spheres, in spheres.c.
+/// The constructors glint.spheres, glint.cylinders and glint._bonds, in spheres.c.
 int glintL_new_spheres(lua_State *L);
+int glintL_new_cylinders(lua_State *L);
+int glintL_new_bonds(lua_State *L);
 /// The constructors glint.mesh and glint.sphere_mesh, in mesh.c.
 int glintL_new_mesh(lua_State *L);
 int glintL_new_sphere_mesh(lua_State *L);

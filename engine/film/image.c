@@ -331,27 +331,50 @@ bool glint_image_has_pass(const glint_image *image, glint_pass pass)
     return glint_image_planes(image, pass)[0] != NULL;
 }
 
+/// Refuses a pass that the image does not store.
+static glint_status check_pass(const glint_image *image, glint_pass pass, glint_error *error)
+{
+    if ((int)pass < 0)
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
+                          (int)pass);
+    if (glint_image_planes(image, pass)[0])
+        return GLINT_OK;
+    if (!is_pass(pass))
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no %s number %d", is_plane(pass) ? "derivative" : "light pass",
+                          (int)pass - (int)(is_plane(pass) ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT));
+    return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", pass_table[pass].name);
+}
+
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error)
 {
     GLINT_REFUSE_NULL(image, error);
     GLINT_REFUSE_NULL(out, error);
-    float *const *plane = glint_image_planes(image, pass);
-    if ((int)pass < 0)
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
-                          (int)pass);
-    if (!plane[0] && !is_pass(pass))
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no %s number %d", is_plane(pass) ? "derivative" : "light pass",
-                          (int)pass - (int)(is_plane(pass) ? GLINT_PASS_DERIVATIVE : GLINT_PASS_LIGHT));
-    if (!plane[0])
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' is not stored in this image", pass_table[pass].name);
-    glint_status status = glint_check_whole("x", x, 0, image->width - 1, error);
+    glint_status status = check_pass(image, pass, error);
+    if (!status)
+        status = glint_check_whole("x", x, 0, image->width - 1, error);
     if (!status)
         status = glint_check_whole("y", y, 0, image->height - 1, error);
     if (status)
         return status;
+    float *const *plane = glint_image_planes(image, pass);
     size_t at = (size_t)y * (size_t)image->width + (size_t)x;
     for (int c = 0; c < 3; c++)
         out[c] = plane[glint_pass_channels(pass) == 1 ? 0 : c][at];
+    return GLINT_OK;
+}
+
+glint_status glint_image_floats(const glint_image *image, glint_pass pass, float *out, glint_error *error)
+{
+    GLINT_REFUSE_NULL(image, error);
+    GLINT_REFUSE_NULL(out, error);
+    const glint_status status = check_pass(image, pass, error);
+    if (status)
+        return status;
+    float *const *plane = glint_image_planes(image, pass);
+    const size_t count = (size_t)image->width * (size_t)image->height, channels = (size_t)glint_pass_channels(pass);
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < channels; c++)
+            out[i * channels + c] = plane[c][i];
     return GLINT_OK;
 }

@@ -139,6 +139,15 @@ static void add_ball(glint_filler *f, glint_prim *prim, const double center[3], 
     glint_fill_solid(f, prim, &desc, placing);
 }
 
+static void add_cylinder(glint_filler *f, glint_prim *prim, const glint_shape_desc *many, const double item[],
+                         const glint_placing *placing)
+{
+    glint_shape_desc desc = { .kind = GLINT_SHAPE_CYLINDER, .radius = item[6], .capped = many->capped };
+    vec_copy(desc.base, item);
+    vec_copy(desc.top, item + 3);
+    glint_fill_solid(f, prim, &desc, placing);
+}
+
 void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided)
 {
     *prim = (glint_prim) { .id = f->id_count++, .two_sided = two_sided, .material = material, .medium = medium };
@@ -157,7 +166,10 @@ static void add_prim(glint_filler *f, const glint_shape *shape, size_t i, uint32
         glint_fill_triangle(f, prim, shape, i, placing, glint_is_mirroring(placing));
         break;
     case GLINT_SHAPE_SPHERES:
-        add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], placing);
+        add_ball(f, prim, shape->items + GLINT_SPHERE_NUMBERS * i, shape->items[GLINT_SPHERE_NUMBERS * i + 3], placing);
+        break;
+    case GLINT_SHAPE_CYLINDERS:
+        add_cylinder(f, prim, desc, shape->items + GLINT_CYLINDER_NUMBERS * i, placing);
         break;
     case GLINT_SHAPE_SPHERE:
         add_ball(f, prim, desc->center, desc->radius, placing);
@@ -241,6 +253,12 @@ static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_t
 
 #define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each counted once per instance
 
+/// Returns the number of flat faces of a solid's instances, at most.
+static size_t count_faces(const glint_shape *shape)
+{
+    return glint_shape_is_solid(shape) ? (shape->desc.kind == GLINT_SHAPE_BOX ? 6 : 2) * shape->count : 0;
+}
+
 /// Counts the primitives of a shape. mapped: the shape is in a group that has a transform. within: the shape is in a
 /// combined solid.
 static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool mapped, bool within)
@@ -276,7 +294,7 @@ static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool 
     f->shared += is_shared(shape) ? shape->count : 0;
     f->shading_points += count_shading_points(shape);
     f->solids += mapped || glint_shape_is_solid(shape) ? shape->count : 0; // at most
-    f->faces += shape->mesh ? glint_count_levels(shape->mesh) : glint_shape_is_solid(shape) ? 6 : 0;
+    f->faces += shape->mesh ? glint_count_levels(shape->mesh) : count_faces(shape);
     f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
     return status;
 }

@@ -47,8 +47,9 @@ static void name_prim(const glint_geometry *geometry, const glint_prim *prim, ch
     const glint_part *part = &geometry->parts[number];
     char owner[2 * GLINT_NAME_SIZE];
     glint_describe_shape(&part->shape->desc, number + 1, owner, sizeof owner);
-    if (part->shape->desc.kind == GLINT_SHAPE_SPHERES)
-        snprintf(out, size, "%s: sphere %u", owner, prim->id - part->first_prim + 1);
+    if (glint_shape_is_many(part->shape->desc.kind))
+        snprintf(out, size, "%s: %s %u", owner, part->shape->desc.kind == GLINT_SHAPE_SPHERES ? "sphere" : "cylinder",
+                 prim->id - part->first_prim + 1);
     else
         snprintf(out, size, "%s", owner);
 }

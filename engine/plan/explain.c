@@ -210,7 +210,9 @@ static bool is_shaded(const glint_shape *shape, glint_shading shading)
 }
 static bool is_uncapped(const glint_shape *shape)
 {
-    return (shape->desc.kind == GLINT_SHAPE_CYLINDER || shape->desc.kind == GLINT_SHAPE_CONE) && !shape->desc.capped;
+    const glint_shape_kind kind = shape->desc.kind;
+    return (kind == GLINT_SHAPE_CYLINDER || kind == GLINT_SHAPE_CYLINDERS || kind == GLINT_SHAPE_CONE) &&
+           !shape->desc.capped;
 }
 static bool is_smooth(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_PHONG); }
 static bool is_flat(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_FLAT); }

@@ -65,6 +65,7 @@ static const char *refusal_of(const glint_shape *part, const glint_shape **found
         return part->desc.capped ? NULL : "capped = true";
     case GLINT_SHAPE_DISK:
     case GLINT_SHAPE_SPHERES:
+    case GLINT_SHAPE_CYLINDERS:
         return "a sphere, box, cylinder, cone, torus, plane, closed mesh, group or combined solid";
     case GLINT_SHAPE_MESH:
         if (part->desc.shading == GLINT_SHADING_FLAT || part->desc.shading == GLINT_SHADING_GOURAUD)

@@ -59,7 +59,7 @@ struct glint_shape {
     size_t references;
     uint64_t revision; ///< changes with every change of the shape; unique among all shapes
     glint_shape_desc desc;
-    size_t count; ///< number of spheres or triangles; 1 for other kinds
+    size_t count; ///< number of spheres, cylinders or triangles; 1 for other kinds
     glint_mesh *mesh; ///< GLINT_SHAPE_MESH
     glint_list children; ///< members of a group, or parts of a combined solid
     size_t level; ///< largest depth of nesting that the shape has had
@@ -68,10 +68,10 @@ struct glint_shape {
     uint64_t checked; ///< for a group: the latest revision of any shape when the group's children were last checked
     uint64_t children_hash; ///< hash of the children's revisions at that time
     bool dressed; ///< as a part: whether it has its own material instead of the material of the whole solid
-    double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: bounding box
-    double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each sphere
-    uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: index of the material of each sphere or triangle;
-        ///< or NULL
+    double lower[3], upper[3]; ///< many spheres or cylinders, and GLINT_SHAPE_MESH: bounding box
+    double *items; ///< many spheres or cylinders: the GLINT_SPHERE_NUMBERS or GLINT_CYLINDER_NUMBERS of each
+    uint32_t *index; ///< many spheres or cylinders, and GLINT_SHAPE_MESH: index of the material of each sphere,
+        ///< cylinder or triangle; or NULL
     glint_material **materials;
     size_t material_count;
 };
@@ -96,10 +96,16 @@ void glint_shape_stretch(glint_shape *shape, const double center[3], double radi
 static inline bool glint_shape_combines(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_UNION; }
 /// Returns whether a shape consists only of its children.
 static inline bool glint_shape_has_children(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_GROUP; }
-/// Returns whether rays intersect a shape as a solid: a box, disk, cylinder, cone or torus.
+enum { GLINT_SPHERE_NUMBERS = 4, GLINT_CYLINDER_NUMBERS = 7 }; ///< centre and radius; base, top and radius
+/// Returns whether a kind consists of many spheres or cylinders.
+static inline bool glint_shape_is_many(glint_shape_kind kind)
+{
+    return kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_CYLINDERS;
+}
+/// Returns whether rays intersect a shape as a solid: a box, disk, cone or torus, one or many cylinders.
 static inline bool glint_shape_is_solid(const glint_shape *shape)
 {
-    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
+    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_CYLINDERS;
 }
 /// Refuses a part of a combined solid that has no inside. who: the name of the combined solid, for the message.
 glint_status glint_check_part(const char *who, const glint_shape *part, glint_error *error);

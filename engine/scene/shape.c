@@ -87,6 +87,8 @@ static const glint_object_field torus_fields[] = {
     EVERY_SHAPE,
 };
 
+static const glint_object_field cylinders_fields[] = { CAPPED("both ends"), EVERY_SHAPE };
+
 static const glint_object_field mesh_fields[] = {
     { GLINT_ROW(shading, CHOICE), .names = shadings, .doc = "where the light is computed" },
     EVERY_SHAPE,
@@ -102,7 +104,8 @@ const glint_object_field *const glint_shape_fields[] = {
     [GLINT_SHAPE_SPHERES] = other_fields,      [GLINT_SHAPE_MESH] = mesh_fields,
     [GLINT_SHAPE_BOX] = box_fields,            [GLINT_SHAPE_DISK] = disk_fields,
     [GLINT_SHAPE_CYLINDER] = cylinder_fields,  [GLINT_SHAPE_CONE] = cone_fields,
-    [GLINT_SHAPE_TORUS] = torus_fields,        [GLINT_SHAPE_GROUP] = group_fields,
+    [GLINT_SHAPE_TORUS] = torus_fields,        [GLINT_SHAPE_CYLINDERS] = cylinders_fields,
+    [GLINT_SHAPE_GROUP] = group_fields,
     [GLINT_SHAPE_UNION] = other_fields,        [GLINT_SHAPE_INTERSECTION] = other_fields,
     [GLINT_SHAPE_DIFFERENCE] = other_fields,
 };
@@ -215,8 +218,8 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
 {
     GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    if (desc->kind > GLINT_SHAPE_DIFFERENCE || desc->kind == GLINT_SHAPE_SPHERES || desc->kind == GLINT_SHAPE_MESH)
-        return glint_fail(error, GLINT_ERR_INVALID, "kind: any kind except spheres and mesh expected");
+    if (desc->kind > GLINT_SHAPE_DIFFERENCE || desc->kind == GLINT_SHAPE_MESH || glint_shape_is_many(desc->kind))
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: any kind except spheres, cylinders and mesh expected");
     glint_status status = check(desc, error);
     if (status)
         return status;
@@ -280,7 +283,7 @@ void glint_shape_release(glint_shape *shape)
         glint_shape_release(shape->children.items[i]);
     glint_list_free(&shape->children);
     glint_mesh_free(shape->mesh);
-    free(shape->spheres);
+    free(shape->items);
     free(shape->index);
     free(shape);
 }
@@ -300,106 +303,18 @@ bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[
 {
     if (!shape || !lower || !upper)
         return false;
-    if (shape->desc.kind != GLINT_SHAPE_SPHERES && shape->desc.kind != GLINT_SHAPE_MESH)
+    if (!glint_shape_is_many(shape->desc.kind) && shape->desc.kind != GLINT_SHAPE_MESH)
         return false;
     memcpy(lower, shape->lower, sizeof shape->lower);
     memcpy(upper, shape->upper, sizeof shape->upper);
     return true;
 }
 
-size_t glint_spheres_count(const glint_shape *shape) { return shape ? shape->count : 0; }
-
-static void read_sphere(const glint_spheres_desc *desc, size_t i, double out[4])
-{
-    if (!desc->is_float) {
-        memcpy(out, (const char *)desc->data + i * 4 * sizeof(double), 4 * sizeof(double));
-        return;
-    }
-    float f[4];
-    memcpy(f, (const char *)desc->data + i * sizeof f, sizeof f);
-    for (int c = 0; c < 4; c++)
-        out[c] = f[c];
-}
-
-static glint_status check_sphere(size_t i, const double s[4], glint_error *error)
-{
-    if (!isfinite(s[0]) || !isfinite(s[1]) || !isfinite(s[2]))
-        return glint_fail(error, GLINT_ERR_INVALID,
-                          "data: sphere %zu: finite centre expected, got {%.15g, %.15g, %.15g}", i + 1, s[0], s[1],
-                          s[2]);
-    if (!(s[3] > 0 && isfinite(s[3])))
-        return glint_fail(error, GLINT_ERR_INVALID, "data: sphere %zu: radius > 0 expected, got %.15g", i + 1, s[3]);
-    return GLINT_OK;
-}
-
-static glint_status fill_spheres(glint_shape *shape, const glint_spheres_desc *desc, glint_error *error)
-{
-    shape->spheres = malloc(desc->count * sizeof *shape->spheres);
-    if (!shape->spheres)
-        return glint_fail_nomem(error);
-    for (size_t i = 0; i < desc->count; i++) {
-        read_sphere(desc, i, shape->spheres[i]);
-        glint_status status = check_sphere(i, shape->spheres[i], error);
-        if (status)
-            return status;
-        glint_shape_stretch(shape, shape->spheres[i], shape->spheres[i][3], i == 0);
-    }
-    shape->count = desc->count;
-    if (!desc->material_index)
-        return GLINT_OK;
-    shape->index = malloc(desc->count * sizeof *shape->index);
-    if (!shape->index)
-        return glint_fail_nomem(error);
-    for (size_t i = 0; i < desc->count; i++) {
-        shape->index[i] = desc->material_index[i];
-        if (shape->index[i] >= shape->material_count)
-            return glint_fail(error, GLINT_ERR_INVALID, "index: sphere %zu: material 1 .. %zu expected, got %llu",
-                              i + 1, shape->material_count, (unsigned long long)shape->index[i] + 1);
-    }
-    return GLINT_OK;
-}
-
-glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error)
-{
-    GLINT_REFUSE_NULL(desc, error);
-    GLINT_REFUSE_NULL(out, error);
-    if (desc->count < 1 || desc->count > MAX_SPHERES)
-        return glint_fail(error, GLINT_ERR_INVALID, "data: 1 .. %zu spheres expected, got %zu", MAX_SPHERES,
-                          desc->count);
-    for (size_t i = 0; i < desc->material_count; i++)
-        if (!desc->materials[i])
-            return glint_fail(error, GLINT_ERR_INVALID, "materials: entry %zu is missing", i + 1);
-    glint_shape_desc base = glint_shape_desc_default(GLINT_SHAPE_SPHERES);
-    base.two_sided = desc->two_sided;
-    memcpy(base.name, desc->name, sizeof base.name);
-    const size_t materials = desc->material_count ? desc->material_count : 1;
-    glint_shape *shape = glint_shape_alloc(&base, materials);
-    if (!shape)
-        return glint_fail_nomem(error);
-    glint_status status = GLINT_OK;
-    for (size_t i = 0; i < materials && !status; i++) {
-        shape->materials[i] = glint_material_or_default(desc->material_count ? desc->materials[i] : NULL, error);
-        if (shape->materials[i])
-            shape->material_count++;
-        else
-            status = GLINT_ERR_NOMEM;
-    }
-    if (!status)
-        status = fill_spheres(shape, desc, error);
-    if (status) {
-        glint_shape_release(shape);
-        return status;
-    }
-    shape->desc.material = shape->materials[0];
-    *out = shape;
-    return GLINT_OK;
-}
-
 const char *glint_shape_kind_name(glint_shape_kind kind)
 {
     static const char *const kinds[] = { "sphere",   "plane", "spheres", "mesh",  "box",   "disk",
-                                         "cylinder", "cone",  "torus",   "group", "union", "intersection",
-                                         "difference" };
+                                         "cylinder", "cone",  "torus",   "cylinders", "group", "union",
+                                         "intersection", "difference" };
     return kinds[kind];
 }
 

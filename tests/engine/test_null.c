@@ -112,6 +112,11 @@ static void test_null_of_objects(void **state)
     REFUSES("desc", glint_shape_create(NULL, &shape, &error));
     REFUSES("desc", glint_shape_set(p.shape, NULL, &error));
     REFUSES("desc", glint_spheres_create(NULL, &shape, &error));
+    REFUSES("desc", glint_cylinders_create(NULL, &shape, &error));
+    REFUSES("desc", glint_bonds_create(NULL, &shape, &error));
+    REFUSES("image", glint_image_floats(NULL, GLINT_PASS_BEAUTY, NULL, &error));
+    REFUSES("out", glint_words_create(NULL, &error));
+    REFUSES("words", glint_words_add(NULL, "a", 1, 1, &error));
     REFUSES("desc", glint_mesh_create(NULL, &shape, &error));
     REFUSES("path", glint_mesh_load(NULL, &mesh, &shape, &error));
     REFUSES("center", glint_sphere_mesh_create(NULL, 1, 8, &mesh, &shape, &error));
@@ -229,6 +234,10 @@ static void test_null_of_every_function(void **state)
     NOTHING(glint_group_child(NULL, 0));
     INVALID(glint_spheres_create(NULL, NULL, NULL));
     NOTHING(glint_spheres_count(NULL));
+    assert_null(glint_spheres_data(NULL));
+    assert_null(glint_spheres_index(NULL));
+    glint_words_destroy(NULL);
+    NOTHING(glint_rows_read(&(glint_rows_desc) { .field_count = 1 }, NULL, 0, 1, &(size_t) { 0 }, &(size_t) { 0 }));
     INVALID(glint_mesh_create(NULL, NULL, NULL));
     INVALID(glint_mesh_load(NULL, NULL, NULL, NULL));
     INVALID(glint_sphere_mesh_create(NULL, 0, 0, NULL, NULL, NULL));

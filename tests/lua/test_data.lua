@@ -478,22 +478,31 @@ end
 function tests.bonds()
   local set = particles.new()
   set:add_frame(xyz.frame "scripts/data/caffeine.xyz")
-  local found = {}
-  local group, count = bonds.new(set)
-  local x, y, z, place = set:places_of_all()
-  check(count == 25 and group.count == 50, "caffeine has 25 bonds, got %d", count)
-  local reach = {}
-  for i = 1, #x do
-    reach[i] = elements[set.materials[place[i]].name].covalent + 0.225
-    found[i] = {}
-  end
-  bonds.each(x, y, z, reach, 0.4, function(i, j) found[i][j] = (found[i][j] or 0) + 1 end)
-  for i = 1, #x do
+  local arrays = set:arrays()
+  local cylinders, count = bonds.new(set)
+  local scene, expected = glint.scene { cylinders }, 0
+  local function covalent(i) return elements[set.materials[arrays.index[i]].name].covalent + 0.225 end
+  for i, a in ipairs(arrays.data) do
     for j = 1, i - 1 do
-      local d = math.sqrt((x[i] - x[j]) ^ 2 + (y[i] - y[j]) ^ 2 + (z[i] - z[j]) ^ 2)
-      check((found[i][j] or 0) == ((d <= reach[i] + reach[j] and d > 0.4) and 1 or 0), "pair %d, %d at %g", i, j, d)
+      local b, square, toward = arrays.data[j], 0, {}
+      for c = 1, 3 do square, toward[c] = square + (a[c] - b[c]) ^ 2, b[c] - a[c] end
+      local d = math.sqrt(square)
+      if d <= covalent(i) + covalent(j) and d > 0.4 then
+        expected = expected + 1
+        for share, atom in pairs { [0.25] = i, [0.75] = j } do -- a ray to a point on the axis, perpendicular to it
+          local at, side = {}, { -toward[2], toward[1], 0 }
+          local length = math.sqrt(side[1] ^ 2 + side[2] ^ 2)
+          for c = 1, 3 do
+            side[c] = side[c] / length
+            at[c] = a[c] + share * toward[c] + 0.2 * side[c]
+          end
+          local hit = scene:cast(at, { -side[1], -side[2], -side[3] })
+          near(hit and hit.t or 0, 0.05, 1e-9, ("bond of %d and %d near %d"):format(i, j, atom))
+        end
+      end
     end
   end
+  check(count == 25 and expected == 25 and cylinders.count == 50, "caffeine has 25 bonds, got %d", count)
   set = particles.new { format = "f32" } -- a grid of 13 x 13 x 13, in shuffled order
   for n = 0, 13 ^ 3 - 1 do
     local i = n * 1000 % 2197
@@ -514,7 +523,28 @@ function tests.bonds()
   local cue = set:depth_cue(set:camera { from = { 0, 0, 1 } }, 0.5)
   near(cue.far - cue.near, 2 * 13, 1e-9, "a depth cue over the depth of all spheres")
   set:spheres()
-  check(not pcall(bonds.new, set, { distance = 1 }), "after spheres() there is nothing left")
+  check(select(2, bonds.new(set, { distance = 1.1 })) == joined, "after spheres()")
+  check(not pcall(function() for _ = 1, 1000 do set:add("C", 0, 0, 0) end end), "no more atoms after spheres()")
+end
+
+-- A pixel on each half of a bond has the colour of its atom in a set with color_by, or one colour for all.
+function tests.colours_of_bonds()
+  local path = write("pair.dump", dump(0, 2, "ff ff ff\n0 10\n0 10\n0 10", "element x y z q", "C 4 5 5 0\nO 5.4 5 5 1\n"))
+  for case = 1, 3 do
+    local set = particles.new { scale = 0.1, color_by = { column = "q", map = "viridis" } }
+    set:add_frame(lammps.frame(path))
+    local spheres = case == 2 and set:spheres()
+    local one = case == 3 and glint.material { diffuse = "red" }
+    local cylinders = bonds.new(set, { material = one or nil })
+    spheres = spheres or set:spheres()
+    local scene = glint.scene { ambient = 1, cylinders, spheres,
+      camera = glint.camera { eye = { 4.7, 5, 9 }, at = { 4.7, 5, 5 }, projection = "orthographic", height = 1.5 } }
+    local image, map = scene:render { width = 60, height = 60 }, glint.colormap "viridis"
+    for x, value in pairs { [17] = 0, [42] = 1 } do -- at x = 4.41 and 5.06
+      local want, got = one and { 1, 0, 0 } or map(value), { image:pixel(x, 30) }
+      for c = 1, 3 do near(got[c], want[c], 1e-6, ("case %d, value %g, channel %d"):format(case, value, c)) end
+    end
+  end
 end
 
 -- Counts the bonds in a periodic box, by a test of every pair and every periodic image.
@@ -545,7 +575,7 @@ function tests.periodic_bonds()
   local scene = glint.scene { group }
   for _, case in ipairs { { 0.25, "C" }, { -0.1, nil }, { 9.75, "O" }, { 10.1, nil }, { 5, nil } } do
     local hit = scene:cast({ case[1], 5, 20 }, { 0, 0, -1 })
-    check((hit and hit.object.material.name) == case[2], "at x = %g: %s", case[1], tostring(case[2]))
+    check((hit and hit.object.materials[hit.element].name) == case[2], "at x = %g: %s", case[1], tostring(case[2]))
   end
   check(select(2, bonds.new(load(), { box = false })) == 0, "none across a face on request")
   check(select(2, bonds.new(load(), { box = { size = { 12, 10, 10 } } })) == 0, "another box")

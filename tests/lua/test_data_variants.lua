@@ -326,9 +326,10 @@ end
 local function colored(name, text, options)
   local set = particles.new(options or { radius = 0.25 })
   set:add_frame(points.frame(write(name, text)))
-  local x, y, z, place = set:places_of_all()
-  local list = {}
-  for i = 1, #x do list[i] = ("%.9g %.9g %.9g %s"):format(x[i], y[i], z[i], set.materials[place[i]].name) end
+  local all, list = set:arrays(), {}
+  for i, row in ipairs(all.data) do
+    list[i] = ("%.9g %.9g %.9g %s"):format(row[1], row[2], row[3], all.materials[all.index[i]].name)
+  end
   return table.concat(list, "; ")
 end
 

@@ -133,7 +133,7 @@ function tests.errors_name_the_field()
   raises("mesh.uv[2]: {u, v} expected", quad, { uv = { { 0, 0 }, { 1, "0" }, { 1, 1 }, { 0, 1 } } })
   raises("mesh.uv: 2 numbers each expected, got 7 numbers", quad, { uv = { 0, 0, 1, 0, 1, 1, 0 } })
   raises("mesh.uv[3]: two finite numbers expected, got {1, inf}", quad, { uv = { { 0, 0 }, { 1, 0 }, { 1, math.huge }, { 0, 1 } } })
-  raises("mesh.uv: list of {u, v}, flat table or packed string expected, got 3", quad, { uv = 3 })
+  raises("mesh.uv: list of {u, v}, array of such rows, flat table or packed string expected, got 3", quad, { uv = 3 })
   raises("mesh.uv: 16 bytes each (u, v in f64) expected, got 3 bytes", quad, { uv = "abc", format = "f64" })
   raises("mesh: file or uv expected, got both", glint.mesh, { file = "x.obj", uv = { 0, 0 } })
   for _, fields in ipairs { { diffuse = UV }, { bump = glint.pattern(function(_, s) return s.uv.u end) } } do

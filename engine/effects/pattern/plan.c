@@ -284,12 +284,17 @@ static bool reads_uv(const glint_plan_pattern *own)
     return reads & GLINT_READS_UV;
 }
 
-/// Checks that all faces of a mesh with its `material`-th material have coordinates.
-static glint_status take_mesh_uv(glint_pattern_space *space, const glint_shape *shape, size_t material,
-                                 glint_error *error)
+/// Checks that all faces of a mesh with its `material`-th material have coordinates. Many cylinders have none.
+static glint_status take_uv(glint_pattern_space *space, const glint_shape *shape, size_t material,
+                            glint_error *error)
 {
     const char *name = shape->desc.name, *before = name[0] ? " '" : "", *after = name[0] ? "'" : "";
+    if (shape->desc.kind == GLINT_SHAPE_CYLINDERS)
+        return glint_fail(error, GLINT_ERR_INVALID, "s.uv: cylinders%s%s%s have no texture coordinates; use p, or single cylinders",
+                          before, name, after);
     space->mesh = shape->mesh;
+    if (!shape->mesh)
+        return GLINT_OK;
     if (!shape->mesh->uv)
         return glint_fail(error, GLINT_ERR_INVALID,
                           "s.uv: mesh%s%s%s has no texture coordinates; set its uv, or add vt to its file", before,
@@ -316,9 +321,8 @@ static glint_status find_spaces(glint_plan_patterns *patterns, const glint_geome
             if (!begun)
                 space_init(&patterns->spaces[i], part);
             begun = true;
-            glint_status status = part->shape->mesh && reads_uv(own)
-                                      ? take_mesh_uv(&patterns->spaces[i], part->shape, k, error)
-                                      : GLINT_OK;
+            glint_status status =
+                reads_uv(own) ? take_uv(&patterns->spaces[i], part->shape, k, error) : GLINT_OK;
             if (status)
                 return status;
             own->spaces = space_key(&patterns->spaces[i], i, own->spaces);

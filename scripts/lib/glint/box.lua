@@ -124,7 +124,7 @@ local function sizes_of(b)
   return x == 0 and 1 or x, y == 0 and 1 or y, z == 0 and 1 or z
 end
 
---- Converts fractional coordinates in the box to a point.
+--- Converts fractional coordinates in the box to a point: numbers or arrays, as in the next two functions.
 function box.unscale(b, u, v, w)
   local low, a, c, d = b.low, sizes_of(b)
   return low[1] + u * a + v * b.xy + w * b.xz, low[2] + v * c + w * b.yz, low[3] + w * d
@@ -138,47 +138,14 @@ function box.scale(b, x, y, z)
   return (x - low[1] - v * b.xy - w * b.xz) / a, v, w
 end
 
+local function wrap(u)
+  return u - (type(u) == "userdata" and u:floor() or math.floor(u))
+end
+
 --- Wraps fractional coordinates into the box along its periodic sides.
 function box.wrapped(b, u, v, w)
   local periodic = b.periodic
-  return periodic[1] and u - math.floor(u) or u, periodic[2] and v - math.floor(v) or v,
-    periodic[3] and w - math.floor(w) or w
-end
-
---- Converts `reach`, measured between opposite faces of the box, to fractional coordinates of each side.
-local function margins(b, reach)
-  local x, y, z = sizes_of(b)
-  local a, c = b.yz / z, (b.xy * b.yz / y - b.xz) / z -- the planes' normals: (1, -xy/y, c) and (0, 1, -yz/z)
-  return reach / x * math.sqrt(1 + (b.xy / y) ^ 2 + c * c), reach / y * math.sqrt(1 + a * a), reach / z
-end
-
---- Finds the periodic images of points in the box that lie within `reach` of it: calls found(i, x, y, z) with the
---- number of a point and the position of its image. Uses only one of two opposite steps p, q, r and -p, -q, -r.
----@param b table
----@param n integer  number of points; the lists may be longer, and may grow during the call
----@param x number[]  x coordinates of the points, wrapped into the box; y and z likewise
----@param y number[]
----@param z number[]
----@param reach number  world units
----@param found function
-function box.images(b, n, x, y, z, reach, found)
-  local size, m, most = b.size, { margins(b, reach) }, {}
-  for i = 1, 3 do
-    most[i] = b.periodic[i] and math.ceil(m[i]) or 0
-    if not b.periodic[i] then m[i] = math.huge end -- points may be outside
-  end
-  for i = 1, n do
-    local u, v, w = box.scale(b, x[i], y[i], z[i])
-    for p = 0, most[1] do
-      for q = p == 0 and 0 or -most[2], most[2] do
-        for r = p == 0 and q == 0 and 1 or -most[3], most[3] do
-          if u + p <= 1 + m[1] and v + q >= -m[2] and v + q <= 1 + m[2] and w + r >= -m[3] and w + r <= 1 + m[3] then
-            found(i, x[i] + p * size[1] + q * b.xy + r * b.xz, y[i] + q * size[2] + r * b.yz, z[i] + r * size[3])
-          end
-        end
-      end
-    end
-  end
+  return periodic[1] and wrap(u) or u, periodic[2] and wrap(v) or v, periodic[3] and wrap(w) or w
 end
 
 return box

@@ -4,34 +4,50 @@
 -- script does not read are skipped, but still checked. Nothing is stored, so a file of any size takes the memory of a
 -- line. Named columns come after the radius, as numbers if possible, otherwise as text:
 --     for label, x, y, z, radius, charge, speed in frame:atoms("q", "speed") do ... end
--- frame.columns lists the names. A film provides the frames of a file in any order:
+-- frame.columns lists the names. The same as arrays (glint.array), read in bulk:
+--     local all, charge, speed = frame:arrays("q", "speed")     -- all.positions, .labels, .kinds, .radii
+-- A film provides the frames of a file in any order:
 --     local film = xyz.film "melt.xyz"
 --     set:add_frame(film:frame(n))
 -- It remembers where each frame begins that it has passed, and continues from there.
+local glint = require "glint"
 local lines = require "glint.lines"
 
 local frames = {}
+
+-- Texts for a missing value in files, in small letters. NA is in capitals because Na is an element.
+local MISSING = { nan = true, ["-nan"] = true, ["+nan"] = true, ["-1.#ind"] = true, ["1.#qnan"] = true, NA = true,
+  ["n/a"] = true, null = true, [""] = true }
+
+--- Returns NaN for a missing value.
+function frames.value_of(value)
+  return type(value) == "string" and (MISSING[value] or MISSING[value:lower()]) and 0 / 0 or value
+end
 
 frames.WORDS = 90 -- words of a line that a Lua pattern can capture
 
 local frame = {}
 frame.__index = frame
 
---- Iterates once over a frame's atoms: label, x, y, z, radius (nil if the file has none), and the named columns.
----@param ... string  names among frame.columns
-function frame:atoms(...)
+-- Begins to read the atoms and these columns.
+function frame:begin(names)
   if self.is_taken then
     error(("%s: the atoms of frame %d have already been read"):format(self.source.path, self.number), 0)
   end
-  local names = { ... }
   for _, name in ipairs(names) do
     if not self.places[name] then
       error(("%s: a column among %s expected, got %q"):format(self.source.path, table.concat(self.columns, ", "),
-        tostring(name)), 2)
+        tostring(name)), 3)
     end
   end
   self.is_taken = true
   if #names > 0 then self.named = self.pick(names) end
+end
+
+--- Iterates once over a frame's atoms: label, x, y, z, radius (nil if the file has none), and the named columns.
+---@param ... string  names among frame.columns
+function frame:atoms(...)
+  self:begin { ... }
   return function()
     if not self.is_done then return self:take(self.next_atom()) end
   end
@@ -45,6 +61,102 @@ function frame:take(label, x, y, z, radius)
   end
   if not self.named then return label, x, y, z, radius end
   return label, x, y, z, radius, self.named(self.line)
+end
+
+-- Returns a reader for the rows of a frame, and the names of its columns in their order; nil: the frame has no rows.
+local function reader_of(self, names, size, checks)
+  local layout = self.layout
+  if not layout then return nil end
+  local kinds, columns, order = {}, {}, {}
+  local function add(name, field, kind)
+    if not field then return end
+    columns[#columns + 1] = not kinds[field] and { field = field, kind = kind } or nil
+    kinds[field] = kinds[field] or name
+    return kinds[field] == name
+  end
+  local is_simple = add("label", layout.label, "word") ~= false
+  for _, name in ipairs { "x", "y", "z" } do is_simple = add(name, layout[name], "number") and is_simple end
+  is_simple = add("radius", layout.radius, size) ~= false and is_simple
+  for i, name in ipairs(names) do is_simple = add(i, self.places[name], "value") and is_simple end
+  if not is_simple or #columns > 64 then return nil end -- a column is read twice: atom by atom
+  table.sort(columns, function(a, b) return a.field < b.field end)
+  for i, column in ipairs(columns) do order[i] = kinds[column.field] end
+  return glint._row_reader { columns = columns, fields = layout.fields, separator = layout.separator,
+    skips = layout.separator ~= nil, checks = checks }, order
+end
+
+-- Returns the text of a label in the line just read.
+local function word_of(self)
+  local line, number = self.line, self.layout.label
+  if type(line) == "table" then return line[number] end
+  return line:match("^%s*" .. ("%S+%s+"):rep(number - 1) .. "(%S+)")
+end
+
+--- Reads all atoms in bulk. Calls atom(label, x, y, z, radius, ...) for the first atom, and for those whose line has
+--- a new label or needs more care; it returns a number for the label, or nil. Between them, calls rows(n, arrays) for
+--- n atoms: arrays.label has the numbers of their labels (nil if there is no column of labels: all have the last
+--- number); arrays.x, y, z and radius (nil: none) the coordinates; arrays[i] the column names[i], NaN where a value is
+--- missing.
+---@param names string[]
+---@param size string  "size": radii > 0 only; "number": any
+---@param atom function
+---@param rows function?  nil: the rows are checked only
+function frame:bulk(names, size, atom, rows)
+  local reader, order = reader_of(self, names, size, not rows)
+  local place = reader and self.layout.place
+  local function take(n, ...)
+    local arrays = {}
+    for i, name in ipairs(rows and order or {}) do arrays[name] = select(i, ...) end
+    if rows and place then arrays.x, arrays.y, arrays.z = place(arrays.x, arrays.y, arrays.z) end
+    if rows and self.layout.is_diameter then arrays.radius = arrays.radius / 2 end
+    if rows then rows(n, arrays) end
+  end
+  local function one(label, ...)
+    if label == nil then return false end
+    local number = atom(label, ...)
+    if not number or not reader then return true end
+    if self.layout.label then reader:learn(word_of(self), number) end
+    local most = self.expected and self.expected - self.done or math.maxinteger
+    self.done = self.done + self.source:rows(reader, most, take)
+    return true
+  end
+  while not self.is_done and one(self:take(self.next_atom())) do end
+end
+
+--- Returns the atoms as arrays: a table with positions (rows of x, y, z), labels (a list of all different ones), kinds
+--- (for each atom, the number of its label in this list), radii (nil if the file has none); and an array for each named
+--- column, NaN where a value is missing.
+---@param ... string  names among frame.columns
+---@return table all
+function frame:arrays(...)
+  local names, all, numbers = { ... }, { labels = {} }, {}
+  local keys, parts = { "label", "x", "y", "z", "radius" }, {}
+  for i in ipairs(names) do keys[5 + i] = i end
+  for _, key in ipairs(keys) do parts[key] = {} end
+  self:begin(names)
+  self:bulk(names, "number", function(label, x, y, z, radius, ...)
+    local values = { ... }
+    for i, name in ipairs(names) do
+      values[i] = frames.value_of(values[i])
+      if type(values[i]) ~= "number" then self:fail(("a number in the column %q"):format(name), tostring(values[i])) end
+    end
+    numbers[label] = numbers[label] or #all.labels + 1
+    all.labels[numbers[label]] = label
+    values.label, values.x, values.y, values.z, values.radius = numbers[label], x, y, z, radius
+    for key, list in pairs(parts) do
+      list[#list + 1] = values[key] and glint.array({ values[key] }, key == "label" and "integer" or nil)
+    end
+    return numbers[label]
+  end, function(n, arrays)
+    local same = parts.label[#parts.label]
+    arrays.label = arrays.label or glint.array(n, "integer") + same[#same]
+    for key, list in pairs(parts) do list[#list + 1] = arrays[key] end
+  end)
+  for _, key in ipairs(keys) do parts[key] = glint._join(parts[key], 1) end
+  all.kinds = #all.labels > 0 and parts.label or glint.array(0, "integer")
+  all.positions = glint.array { parts.x, parts.y, parts.z }
+  all.radii = #parts.radius > 0 and parts.radius or nil
+  return all, table.unpack(parts, 1, #names)
 end
 
 --- Raises an error at the file and line of the last atom.
@@ -98,14 +210,15 @@ end
 -- Skips the rest of a frame.
 local function read_over(last)
   if not last or last.is_done then return end
-  repeat until last.next_atom() == nil
+  last.named = nil
+  last:bulk({}, "number", function() return 0 end)
   last.is_done = true
 end
 
 local function begin(source, start, number)
   local fields, next_atom = start(source, number)
   if not fields then return nil end
-  fields.source, fields.number, fields.next_atom = source, number, next_atom
+  fields.source, fields.number, fields.next_atom, fields.done = source, number, next_atom, fields.done or 0
   return setmetatable(fields, frame)
 end
 

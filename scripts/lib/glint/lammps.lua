@@ -71,9 +71,32 @@ local function read_box(source, header, frame)
   frame.box = box
 end
 
+-- Returns a function from the coordinates in a file to positions, numbers or arrays; nil: they are positions.
+local function find_place(source, frame, scaled, options)
+  local box, cell = frame.box, frame.cell
+  if scaled and not box and not options.wrap then
+    return function(u, v, w)
+      local found = { table.unpack(cell.origin) }
+      for i, side in ipairs { cell.a, cell.b, cell.c } do
+        for k = 1, 3 do found[k] = found[k] + ({ u, v, w })[i] * side[k] end
+      end
+      return table.unpack(found)
+    end
+  end
+  if not scaled and not options.wrap then return nil end
+  return function(x, y, z)
+    if not box then
+      source:fail("a box for scaled coordinates, with a along x and b in the xy plane", frame.line)
+    end
+    if not scaled then x, y, z = boxes.scale(box, x, y, z) end
+    if options.wrap then x, y, z = boxes.wrapped(box, x, y, z) end
+    return boxes.unscale(box, x, y, z)
+  end
+end
+
 -- Finds the meaning of the columns. One pattern captures the columns needed, at most five, of a line: columns.x and so
 -- on are the numbers of the captures.
-local function find_columns(source, header)
+local function find_columns(source, header, frame, options)
   local names, place, used = words(header), {}, {}
   for i, name in ipairs(names) do place[name] = i end
   local columns, position = { count = #names, captures = {} }, nil
@@ -83,10 +106,12 @@ local function find_columns(source, header)
   end
   if not position then source:fail("columns x y z, xs ys zs, xu yu zu or xsu ysu zsu", header) end
   local label = place.element or place.typelabel or place.type
-  columns.scaled = position.scaled
+  local size = place.radius or place.diameter
+  frame.layout = { label = label, fields = #names, radius = size, is_diameter = size and not place.radius,
+    x = place[position[1]], y = place[position[2]], z = place[position[3]],
+    place = find_place(source, frame, position.scaled, options) }
   used[place[position[1]]], used[place[position[2]]], used[place[position[3]]] = "x", "y", "z"
   if label then used[label] = label == place.type and "type" or "label" end
-  local size = place.radius or place.diameter
   if size then used[size] = place.radius and "radius" or "diameter" end
   local parts, rank = {}, 0
   for i = 1, #names do
@@ -121,18 +146,7 @@ local function read_atom(source, frame, columns, options)
   end
   local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
   local z, radius = source:number_of(list[columns.z], "z"), nil
-  if columns.scaled and not frame.box and not options.wrap then
-    local cell, share = frame.cell, { x, y, z }
-    x, y, z = table.unpack(cell.origin)
-    for i, side in ipairs { cell.a, cell.b, cell.c } do
-      x, y, z = x + share[i] * side[1], y + share[i] * side[2], z + share[i] * side[3]
-    end
-  elseif columns.scaled or options.wrap then
-    local box = frame.box or source:fail("a box for scaled coordinates, with a along x and b in the xy plane", line)
-    if not columns.scaled then x, y, z = boxes.scale(box, x, y, z) end
-    if options.wrap then x, y, z = boxes.wrapped(box, x, y, z) end
-    x, y, z = boxes.unscale(box, x, y, z)
-  end
+  if frame.layout.place then x, y, z = frame.layout.place(x, y, z) end
   if columns.radius then
     radius = source:number_of(list[columns.radius], "radius")
   elseif columns.diameter then
@@ -179,7 +193,8 @@ local function start(source, number, options)
   for _, name in ipairs { "step", "count", frame.cell and "cell" or "box" } do
     if not frame[name] then source:fail(("the %s of the frame above ITEM: ATOMS"):format(name), "ITEM: ATOMS") end
   end
-  local columns = find_columns(source, header)
+  local columns = find_columns(source, header, frame, options)
+  frame.expected = frame.count
   frames.name_columns(frame, words(header))
   return frame, function()
     if frame.done == frame.count then return nil end

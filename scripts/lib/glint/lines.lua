@@ -10,7 +10,7 @@ source.__index = source
 
 local LONGEST = 40 -- characters of a line shown in an error
 local LINE_MAX = 1 << 20 -- bytes
-local BLOCK = 1 << 16 -- bytes read at once
+local BLOCK = 1 << 18 -- bytes read at once
 
 -- Formats of other programs that no reader here accepts: by a file's extension, and by its first bytes.
 local ENDINGS = {
@@ -71,7 +71,7 @@ end
 -- Returns the block with lines that end in LF or CRLF. Carriage returns without an LF after them become line ends, and
 -- several before one LF become one line end. All other bytes stay.
 local function end_lines(block)
-  if not block:find "\r[^\n]" then return block end
+  if not block:find("\r", 1, true) or not block:find "\r[^\n]" then return block end
   return (block:gsub("(\r+)()", function(run, after)
     return block:byte(after) == 10 and (" "):rep(#run - 1) .. "\r" or ("\n"):rep(#run)
   end))
@@ -117,12 +117,6 @@ end
 
 --- Returns the next line without its end (LF, CRLF or CR), nil after the last.
 function source:next()
-  if self.held ~= nil then
-    local line = self.held
-    self.held = nil
-    self.number = self.number + 1
-    return line
-  end
   local to = self.block:find("\n", self.at, true) or line_end(self)
   if not self.file and self.at > #self.block then return nil end
   local line = self.block:sub(self.at, to - 1)
@@ -138,10 +132,30 @@ function source:next_full()
   end
 end
 
---- Puts one line back: the next call of next() returns it again.
-function source:back(line)
-  self.held = line
+--- Puts the last line back: the next call of next() returns it again.
+function source:back()
+  self.at = self.line_at - self.base + 1
   self.number = self.number - 1
+end
+
+--- Reads up to `most` rows with a reader of glint._row_reader. Stops before a line that the reader does not accept;
+--- next() returns that line. Calls rows(n, ...) for every block of n rows, with the reader's arrays.
+---@param reader userdata
+---@param most integer
+---@param rows function
+---@return integer count
+function source:rows(reader, most, rows)
+  local total = 0
+  local function take(at, n, passed, ...)
+    self.at, self.number, total = at, self.number + passed, total + n
+    if n > 0 then rows(n, ...) end
+  end
+  while total < most do
+    take(reader:read(self.block, math.min(self.at, #self.block + 1), most - total))
+    if total == most or not self.file or self.block:find("\n", self.at, true) then break end
+    line_end(self)
+  end
+  return total
 end
 
 --- Raises an error at the last line read, or after it when `got` is nil: the file ended.
@@ -193,7 +207,7 @@ end
 ---@return integer place
 ---@return integer number
 function source:tell()
-  return self.held ~= nil and self.line_at or self.base + self.at - 1, self.number
+  return self.base + self.at - 1, self.number
 end
 
 --- Continues from a position of tell(). The file may have been read to its end, but cannot be standard input.
@@ -203,14 +217,14 @@ function source:go(place, number)
   if self.path == "-" then error("standard input can be read only once: a file, or a later frame expected", 0) end
   if not self.file then self.file = lines.open(self.path).file end
   self.file:seek("set", place)
-  self.base, self.number, self.block, self.at, self.held = place, number, "", 1, nil
+  self.base, self.number, self.block, self.at = place, number, "", 1
 end
 
 --- Closes the file before its end.
 function source:close()
   if self.file and self.file ~= io.stdin then self.file:close() end
   self.base = self.base + self.at - 1
-  self.file, self.held, self.block, self.at = nil, nil, "", 1
+  self.file, self.block, self.at = nil, "", 1
 end
 
 return lines

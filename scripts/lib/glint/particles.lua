@@ -7,16 +7,16 @@
 -- Other labels in a file, such as ghost atoms, form one kind, "ghost" (pink, radius 0.5), with one warning per
 -- file.
 --     local set = particles.new { color_by = { column = "speed", map = "viridis" } }     -- also low, high: its range
--- Memory: numbers are packed in chunks, without a table for each sphere. A sphere takes 36 bytes (20 as "f32"), and
--- twice as much while spheres() joins the chunks. The engine then takes some 260 bytes per sphere from the first
--- picture on, and 380 while the index is built.
+-- Memory: numbers are in arrays (glint.array), without a table for each sphere. A sphere takes 40 bytes, 48 with
+-- color_by, and twice as much while spheres() joins the arrays. The engine then takes some 260 bytes per sphere from
+-- the first picture on, and 380 while the index is built.
 local glint = require "glint"
-local boxes, elements = require "glint.box", require "glint.elements"
+local boxes, elements, frames = require "glint.box", require "glint.elements", require "glint.frames"
 
 local particles = {}
 
 local CHUNK = 256 -- spheres packed at once
-local LARGE = 100000 -- spheres; larger strings are collected once the engine has its copy, which Lua does not count
+local LARGE = 100000 -- spheres; larger arrays are collected once the engine has its copy, which Lua does not count
 local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
 local POINT, GHOST = { color = "#b8b8b8", radius = 0.5 }, { color = "#ff1493", radius = 0.5 }
 
@@ -52,7 +52,7 @@ end
 --- Makes an empty set.
 --- The options: kinds, { [label] = { color, radius } } before the known ones (radius 0.5 by default; `material` may
 --- replace color); scale, a factor for the kinds' radii (default 1); radius, for every kind instead;
---- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory;
+--- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32", which rounds;
 --- color_by, { column, map, low, high, missing }: spheres have the colour of their value in a map of glint.colormap
 --- (default viridis) from low to high (default: the lowest and highest value there is), in 256 steps; a missing value
 --- (nan, NA, an empty field) has the colour `missing` (default grey, "#808080"); labels give the radii.
@@ -76,17 +76,7 @@ function particles.new(options)
     count = 0, format = format, options = options, kinds = {}, materials = {}, counts = {},
     low = { math.huge, math.huge, math.huge }, high = { -math.huge, -math.huge, -math.huge },
     data = {}, index = {}, numbers = {}, places = {}, pending = 0,
-    code = format == "f32" and "f" or "d",
   }, set)
-end
-
--- Texts for a missing value in files, in small letters. NA is in capitals because Na is an element.
-local MISSING = { nan = true, ["-nan"] = true, ["+nan"] = true, ["-1.#ind"] = true, ["1.#qnan"] = true, NA = true,
-  ["n/a"] = true, null = true, [""] = true }
-
--- Returns NaN for a missing value.
-local function value_of(value)
-  return type(value) == "string" and (MISSING[value] or MISSING[value:lower()]) and 0 / 0 or value
 end
 
 --- Returns the lowest and the highest value of a column in all frames, for one range of colours over a film: low, high
@@ -95,14 +85,19 @@ end
 ---@param column string
 function particles.range(list, column)
   local low, high = math.huge, -math.huge
+  local function widen(least, most)
+    if least == least then low, high = math.min(low, least), math.max(high, most) end -- not NaN
+  end
   for frame in list do
-    for _, _, _, _, _, value in frame:atoms(column) do
-      value = value_of(value)
+    frame:begin { column }
+    frame:bulk({ column }, "number", function(_, _, _, _, _, value)
+      value = frames.value_of(value)
       if math.type(value) == nil or math.abs(value) == math.huge then
         frame:fail(("a finite number in the column %q"):format(column), tostring(value))
       end
-      if value == value then low, high = math.min(low, value), math.max(high, value) end
-    end
+      widen(value, value)
+      return 0
+    end, function(_, arrays) widen(arrays[1]:min(), arrays[1]:max()) end)
   end
   if low > high then error("particles.range: frames with atoms that have values expected, got none", 2) end
   return low, high
@@ -178,36 +173,27 @@ local function place_of_color(self, kind, code)
   return colors[code]
 end
 
--- Packs the pending spheres into one string.
+-- Moves the pending spheres into arrays.
 local function pack(self)
   local n = self.pending
   if n == 0 then return end
-  self.data[#self.data + 1] = (self.code:rep(4 * n)):pack(table.unpack(self.numbers, 1, 4 * n))
-  self.index[#self.index + 1] = (("I4"):rep(n)):pack(table.unpack(self.places, 1, n))
-  if self.color_by then
-    self.values[#self.values + 1] = (("d"):rep(n)):pack(table.unpack(self.pending_values, 1, n))
-  end
+  if not self.data then error("particles: the spheres of this set have already been used", 0) end
+  self.data[#self.data + 1] = glint.array(table.move(self.numbers, 1, 4 * n, 1, {}))
+  self.index[#self.index + 1] = glint.array(table.move(self.places, 1, n, 1, {}), "integer")
+  if self.color_by then self.values[#self.values + 1] = glint.array(table.move(self.pending_values, 1, n, 1, {})) end
   self.pending = 0
 end
 
-local function stretch(self, x, y, z, radius)
-  local low, high = self.low, self.high
-  if x - radius < low[1] then low[1] = x - radius end
-  if y - radius < low[2] then low[2] = y - radius end
-  if z - radius < low[3] then low[3] = z - radius end
-  if x + radius > high[1] then high[1] = x + radius end
-  if y + radius > high[2] then high[2] = y + radius end
-  if z + radius > high[3] then high[3] = z + radius end
+-- Extends the box of all spheres, along one axis.
+local function stretch(self, axis, least, most)
+  if least < self.low[axis] then self.low[axis] = least end
+  if most > self.high[axis] then self.high[axis] = most end
 end
 
--- Stores the value for the sphere's colour; NaN is a missing value.
-local function put_value(self, value)
-  self.pending_values[self.pending] = value
-  if value ~= value then
-    self.has_missing = true
-    return
-  end
-  self.lowest, self.highest = math.min(self.lowest, value), math.max(self.highest, value)
+-- Extends the range of all values. Ends that are NaN belong to missing values.
+local function widen(self, least, most, has_missing)
+  self.has_missing = self.has_missing or has_missing
+  if least == least then self.lowest, self.highest = math.min(self.lowest, least), math.max(self.highest, most) end
 end
 
 -- Adds a sphere. On failure, returns false, the expectation, and the actual value.
@@ -218,17 +204,22 @@ local function put(self, frame, label, x, y, z, radius, value, code)
   end
   radius = radius or kind.radius
   if radius <= 0 then return false, "a radius > 0", ("%.14g"):format(radius) end
-  value = value_of(value)
+  value = frames.value_of(value)
   if self.color_by and (math.type(value) == nil or math.abs(value) == math.huge) then
     return false, ("a finite number in the column %q"):format(self.color_by.column), tostring(value)
   end
   local numbers, at = self.numbers, 4 * self.pending
   numbers[at + 1], numbers[at + 2], numbers[at + 3], numbers[at + 4] = x, y, z, radius
-  stretch(self, x, y, z, radius)
+  stretch(self, 1, x - radius, x + radius)
+  stretch(self, 2, y - radius, y + radius)
+  stretch(self, 3, z - radius, z + radius)
   self.pending = self.pending + 1
   local is_colored = code and not kind.is_own
   self.places[self.pending] = is_colored and place_of_color(self, kind, code) or place_of(self, kind)
-  if self.color_by then put_value(self, value) end
+  if self.color_by then
+    self.pending_values[self.pending] = value
+    widen(self, value, value, value ~= value)
+  end
   self.count = self.count + 1
   self.counts[kind.name] = self.counts[kind.name] + 1
   if self.pending == CHUNK then pack(self) end
@@ -274,35 +265,51 @@ local function add_colored(self, frame)
   return self
 end
 
+-- Adds n spheres in arrays; `last` is their material without a column of labels.
+local function add_rows(self, n, arrays, last)
+  local index, values = arrays.label or glint.array(n, "integer") + last, arrays[1]
+  pack(self)
+  local radii = arrays.radius
+  if not radii then
+    local of_kind = {}
+    for i = 1, #self.materials do of_kind[i] = 0 end
+    for _, kind in pairs(self.kinds) do of_kind[kind.place or 0] = kind.radius end
+    of_kind[0] = nil
+    radii = glint.array(of_kind):at(index)
+  end
+  for axis, name in ipairs { "x", "y", "z" } do
+    stretch(self, axis, (arrays[name] - radii):min(), (arrays[name] + radii):max())
+  end
+  self.data[#self.data + 1] = glint.array { arrays.x, arrays.y, arrays.z, radii }
+  self.index[#self.index + 1] = index
+  if values then
+    self.values[#self.values + 1] = values
+    widen(self, values:min(), values:max(), values:bins(0, 1, 1):max() == 2)
+  end
+  self.count = self.count + n
+  local counts = index:counts()
+  for name, kind in pairs(self.kinds) do
+    if name == kind.name and kind.place then
+      self.counts[name] = self.counts[name] + (counts[kind.place] or 0)
+    end
+  end
+end
+
 --- Adds the atoms of a frame from a reader; points of a coloured cloud keep their colours. An atom that cannot be added
 --- is an error with file and line. The set stores the frame's box for glint.bonds.
 ---@return table set  the set itself
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end
   if frame.color and not self.color_by then return add_colored(self, frame) end
-  for label, x, y, z, radius, value in frame:atoms(self.color_by and self.color_by.column) do
+  local names, last = { self.color_by and self.color_by.column }, nil
+  frame:begin(names)
+  frame:bulk(names, "size", function(label, x, y, z, radius, value)
     local done, expected, got = put(self, frame, label, x, y, z, radius, value)
     if not done then frame:fail(expected, got) end
-  end
+    last = self.kinds[label].place
+    return last
+  end, function(n, arrays) add_rows(self, n, arrays, last) end)
   return self
-end
-
---- Returns the positions of all spheres, and the index of each in set.materials: four lists, in the order of addition.
---- Not after spheres().
-function set:places_of_all()
-  if not self.data then error("particles: the spheres of this set have already been used", 2) end
-  pack(self)
-  local x, y, z, place = {}, {}, {}, {}
-  for n, chunk in ipairs(self.data) do
-    local at, index, next_index = 1, self.index[n], 1
-    while at <= #chunk do
-      local i = #x + 1
-      x[i], y[i], z[i], at = (self.code:rep(3)):unpack(chunk, at)
-      place[i], next_index = ("I4"):unpack(index, next_index)
-      at = at + self.code:packsize() -- the radius
-    end
-  end
-  return x, y, z, place
 end
 
 --- Returns the range of color_by: the numbers at the ends of its map.
@@ -317,33 +324,38 @@ function set:range()
   return low, low + 1 -- all values are equal
 end
 
--- Makes the materials for the values and, packed, their index for each sphere.
-local function color(self, all)
+-- Returns the materials for the values, and their index for each sphere.
+local function color(self)
   local low, high = self:range()
-  local map, scale, index = glint.colormap(self.color_by.map or "viridis"), STEPS / (high - low), {}
-  all.materials = {}
+  local map, materials = glint.colormap(self.color_by.map or "viridis"), {}
   for i = 1, STEPS do
     local fields = { diffuse = map((i - 1) / (STEPS - 1)) }
     for field, value in pairs(self.options.material or {}) do fields[field] = value end
-    all.materials[i] = glint.material(fields)
+    materials[i] = glint.material(fields)
   end
   local fields = { name = "missing", diffuse = self.color_by.missing or map(0 / 0) }
   for field, value in pairs(self.options.material or {}) do fields[field] = value end
-  all.materials[STEPS + 1] = self.has_missing and glint.material(fields) or nil
-  for n, chunk in ipairs(self.values) do
-    local list = { (("d"):rep(#chunk // 8)):unpack(chunk) }
-    list[#list] = nil -- the list's terminator
-    for i, value in ipairs(list) do
-      local is_missing = value ~= value
-      list[i] = is_missing and STEPS + 1 or math.floor(math.max(0, math.min((value - low) * scale, STEPS - 1))) + 1
-    end
-    index[n] = (("I4"):rep(#list)):pack(table.unpack(list))
-  end
-  all.index, self.values = table.concat(index), nil
+  materials[STEPS + 1] = self.has_missing and glint.material(fields) or nil
+  return materials, glint._join(self.values, 1):bins(low, high, STEPS)
+end
+
+--- Returns the spheres as arrays: data (rows of x, y, z, radius), index (the material of each in the list materials),
+--- and places (the material by its label, which differs from index in a set with color_by).
+---@return table all
+function set:arrays()
+  pack(self)
+  local done = self.done
+  if done and done.count == self.count then return done end
+  local places = glint._join(self.index, 1)
+  local all = { count = self.count, places = places, index = places, materials = self.materials,
+    data = glint._join(self.data, 4, self.format == "f32") }
+  if self.color_by then all.materials, all.index = color(self) end
+  self.data, self.index, self.done = { all.data }, { places }, all
+  return all
 end
 
 --- Returns the spheres as one shape; an empty group if there are none, as in the first frame of some films. The set
---- gives up its own copy: call it once.
+--- gives up its arrays: call it once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
   if not self.data then error("particles: the spheres of this set have already been used", 2) end
@@ -351,13 +363,12 @@ function set:spheres(fields)
     self.data = nil
     return glint.group {}
   end
-  pack(self)
-  local all = { format = self.format, materials = self.materials }
-  all.data, self.data = table.concat(self.data), nil
-  all.index, self.index = table.concat(self.index), nil
-  if self.color_by then color(self, all) end
-  for name, value in pairs(fields or {}) do all[name] = value end
-  local shape = glint.spheres(all)
+  local all = self:arrays()
+  local given = { data = all.data, index = all.index, materials = all.materials }
+  for name, value in pairs(fields or {}) do given[name] = value end
+  local shape = glint.spheres(given)
+  self.shape, self.data, self.values, given.data, given.index = shape, nil, nil, nil, nil
+  self.done = { count = self.count, places = all.places, materials = all.materials, data = shape }
   if self.count >= LARGE then
     all.data, all.index = nil, nil
     collectgarbage()

@@ -209,14 +209,19 @@ local function start(source, number, options)
     fields.color = { most = most or most_of(source, line, separator, place) }
     for _, name in ipairs { "red", "green", "blue" } do fields.places[name] = place[name] end
   end
-  local done = 0
+  fields.done, fields.expected = 0, expected
+  fields.layout = { label = place.label, x = place.x, y = place.y, z = place.z, radius = place.radius, fields = count,
+    separator = separator }
   return fields, function()
     local text = source:next_full()
-    if expected and done == expected and text and text:find "^%s*%d+%s*$" then -- another scan follows
-      expected, done, text = math.tointeger(tonumber(text)), 0, source:next_full()
+    if expected and fields.done == expected and text and text:find "^%s*%d+%s*$" then -- another scan follows
+      expected, fields.done, text = math.tointeger(tonumber(text)), 0, source:next_full()
+      fields.expected = expected
     end
-    done = done + 1
-    if expected and done <= expected and not text then source:fail(("point %d of %d"):format(done, expected), nil) end
+    fields.done = fields.done + 1
+    if expected and fields.done <= expected and not text then
+      source:fail(("point %d of %d"):format(fields.done, expected), nil)
+    end
     if text then return read_point(source, fields, text, place, separator, count) end
   end
 end

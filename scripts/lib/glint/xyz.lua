@@ -17,14 +17,14 @@ local xyz = {}
 
 local AXES = { "_x", "_y", "_z" }
 
-local function read_atom(source, frame, index)
+local function read_atom(source, frame)
   local line = source:next()
-  if not line then source:fail(("atom %d of %d"):format(index, frame.count), nil) end
+  if not line then source:fail(("atom %d of %d"):format(frame.done, frame.count), nil) end
   frame.line = line
   local label, x, y, z = line:match(frame.pattern)
   if frame.swaps and label then x, y, z, label = label, x, y, z end
   if frame.is_type and label and label:find "^%d+$" then label = "type" .. label end
-  if not label then source:fail(("atom %d of %d (%s)"):format(index, frame.count, frame.form), line) end
+  if not label then source:fail(("atom %d of %d (%s)"):format(frame.done, frame.count, frame.form), line) end
   local size = frame.size_pattern and source:number_of(line:match(frame.size_pattern), frame.size_name)
   if size and frame.size_name:lower() == "diameter" then size = size / 2 end
   return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z"), size
@@ -110,6 +110,8 @@ local function find_columns(source, fields)
     source:fail(("%s among the first %d columns"):format(names[size], frames.WORDS), fields.comment)
   end
   fields.size_name = names[size]
+  fields.layout = { label = label, x = place.x, y = place.y, z = place.z, radius = size,
+    is_diameter = size and names[size]:lower() == "diameter" }
   fields.size_pattern = size and "^%s*" .. ("%S+%s+"):rep(size - 1) .. "(%S+)"
   frames.name_columns(fields, names)
   if not text then
@@ -160,15 +162,16 @@ local function start(source, number)
   if not line and number > 1 then return nil end
   local before = number > 1 and (" of frame %d (the frame before it is complete)"):format(number) or ""
   if not line or not line:find "^%s*%d+%s*$" then source:fail("the number of atoms" .. before, line) end
-  local count, index = source:whole(line, "the number of atoms", 0), 0
+  local count = source:whole(line, "the number of atoms", 0)
   local comment = source:next()
   if not comment then source:fail("a line of comment", nil) end
-  local fields = { count = count, comment = comment, keys = read_keys(comment) }
+  local fields = { count = count, expected = count, done = 0, comment = comment, keys = read_keys(comment) }
   find_columns(source, fields)
   find_cell(source, fields)
   return fields, function()
-    index = index + 1
-    if index <= count then return read_atom(source, fields, index) end
+    if fields.done == count then return nil end
+    fields.done = fields.done + 1
+    return read_atom(source, fields)
   end
 end
 

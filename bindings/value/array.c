@@ -1,0 +1,581 @@
+// glint.array: a block of numbers. Its rows have one number or several.
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+#define WIDTH_MAX 64
+#define STEPS_MAX ((lua_Integer)1 << 53)
+
+glintL_array *glintL_to_array(lua_State *L, int index) { return luaL_testudata(L, index, GLINTL_ARRAY); }
+
+glintL_array *glintL_push_array(lua_State *L, size_t count, size_t width, bool is_whole)
+{
+    if (count > (SIZE_MAX / 2 - sizeof(glintL_array)) / sizeof(double) / width)
+        glintL_error(L, "array: out of memory");
+    luaL_checkstack(L, 2, "array");
+    glintL_array *a = lua_newuserdatauv(L, sizeof *a + count * width * sizeof *a->numbers, 0);
+    a->count = count;
+    a->width = (uint32_t)width;
+    a->is_whole = is_whole;
+    a->numbers = (double *)(a + 1);
+    a->wholes = (int64_t *)(a + 1);
+    luaL_setmetatable(L, GLINTL_ARRAY);
+    return a;
+}
+
+static glintL_array *check_self(lua_State *L)
+{
+    glintL_array *a = glintL_to_array(L, 1);
+    if (!a) {
+        const char *got = glintL_push_spelling(L, 1);
+        glintL_error(L, "array expected, got %s%s", got, glintL_push_colon_cure(L, 1));
+    }
+    return a;
+}
+
+static double number_at(const glintL_array *a, size_t i) { return a->is_whole ? (double)a->wholes[i] : a->numbers[i]; }
+
+// ---- Making ----
+
+// Reads the number on top of the stack, and pops it.
+static void take_number(lua_State *L, glintL_array *a, size_t i, size_t row)
+{
+    int is_whole = lua_type(L, -1) == LUA_TNUMBER;
+    if (is_whole && a->is_whole)
+        a->wholes[i] = lua_tointegerx(L, -1, &is_whole);
+    else if (is_whole)
+        a->numbers[i] = lua_tonumber(L, -1);
+    if (!is_whole) {
+        const char *got = glintL_push_spelling(L, -1);
+        glintL_error(L, "array[%I]: %s expected, got %s", (LUAI_UACINT)row + 1, a->is_whole ? "whole number" : "number", got);
+    }
+    lua_pop(L, 1);
+}
+
+// Reads a row of several numbers on top of the stack, and pops it: a vector, or a list.
+static void take_row(lua_State *L, glintL_array *a, size_t row)
+{
+    const double *v = glintL_to_vector(L, -1);
+    if (!(v && a->width == 3) && !(lua_istable(L, -1) && lua_rawlen(L, -1) == a->width)) {
+        const char *got = glintL_push_spelling(L, -1);
+        glintL_error(L, "array[%I]: %I numbers expected, got %s", (LUAI_UACINT)row + 1, (LUAI_UACINT)a->width, got);
+    }
+    for (lua_Integer c = 0; c < a->width; c++) {
+        if (v)
+            lua_pushnumber(L, v[c]);
+        else
+            lua_rawgeti(L, -1, c + 1);
+        take_number(L, a, row * a->width + (size_t)c, row);
+    }
+    lua_pop(L, 1);
+}
+
+// Makes an array whose columns are the arrays in the list at 1.
+static void join_columns(lua_State *L, size_t width)
+{
+    size_t count = 0;
+    bool is_whole = true;
+    for (size_t c = 0; c < width; c++, lua_pop(L, 1)) {
+        lua_rawgeti(L, 1, (lua_Integer)c + 1);
+        const glintL_array *next = glintL_to_array(L, -1);
+        if (!next || next->width != 1 || (c > 0 && next->count != count)) {
+            const char *got = glintL_push_spelling(L, -1);
+            glintL_error(L, "array[%I]: array of one column and as many rows as the first expected, got %s",
+                         (LUAI_UACINT)c + 1, got);
+        } else {
+            count = next->count;
+            is_whole = is_whole && next->is_whole;
+        }
+    }
+    if (width > WIDTH_MAX)
+        glintL_error(L, "array: at most %d columns expected, got %I", WIDTH_MAX, (LUAI_UACINT)width);
+    glintL_array *a = glintL_push_array(L, count, width, is_whole);
+    for (size_t c = 0; c < width; c++, lua_pop(L, 1)) {
+        lua_rawgeti(L, 1, (lua_Integer)c + 1);
+        const glintL_array *column = glintL_to_array(L, -1);
+        for (size_t i = 0; i < count; i++) {
+            if (is_whole)
+                a->wholes[i * width + c] = column->wholes[i];
+            else
+                a->numbers[i * width + c] = number_at(column, i);
+        }
+    }
+}
+
+static void read_list(lua_State *L, bool is_whole)
+{
+    const size_t count = glintL_check_list(L, 1, "array", false);
+    size_t width = 1;
+    if (count > 0) {
+        lua_rawgeti(L, 1, 1);
+        if (glintL_to_array(L, -1)) {
+            join_columns(L, count);
+            return;
+        }
+        width = glintL_to_vector(L, -1) ? 3 : lua_istable(L, -1) ? lua_rawlen(L, -1) : 1;
+        lua_pop(L, 1);
+    }
+    if (width < 1 || width > WIDTH_MAX)
+        glintL_error(L, "array[1]: 1 to %d numbers expected, got %I", WIDTH_MAX, (LUAI_UACINT)width);
+    glintL_array *a = glintL_push_array(L, count, width, is_whole);
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, 1, (lua_Integer)i + 1);
+        if (width == 1)
+            take_number(L, a, i, i);
+        else
+            take_row(L, a, i);
+    }
+}
+
+// glint.array(list | count, kind): count rows of 0.
+static int new_array(lua_State *L)
+{
+    static const char *const kinds[] = { "number", "integer", NULL };
+    static const glintL_field field = { .name = "kind", .type = GLINT_TYPE_CHOICE, .names = kinds };
+    unsigned kind = 0;
+    lua_settop(L, 2);
+    if (!lua_isnil(L, 2))
+        glintL_read_field(L, 2, "array", &field, &kind);
+    if (lua_istable(L, 1)) {
+        read_list(L, kind == 1);
+    } else if (lua_isinteger(L, 1) && lua_tointeger(L, 1) >= 0) {
+        glintL_array *a = glintL_push_array(L, (size_t)lua_tointeger(L, 1), 1, kind == 1);
+        memset(a->numbers, 0, a->count * sizeof *a->numbers);
+    } else
+        glintL_refuse(L, 1, "array", "list of numbers, rows or arrays, or a whole number >= 0,");
+    return 1;
+}
+
+// _join(list, width, single): the numbers of all arrays of the list, one after the other, in rows of `width`; rounded to
+// single precision if `single`. Only for scripts/lib.
+static int join(lua_State *L)
+{
+    size_t count = 0, at = 0;
+    bool is_whole = false;
+    luaL_checktype(L, 1, LUA_TTABLE);
+    const lua_Integer parts = (lua_Integer)lua_rawlen(L, 1), width = luaL_checkinteger(L, 2);
+    const bool is_single = lua_toboolean(L, 3);
+    for (lua_Integer i = 1; i <= parts; i++, lua_pop(L, 1)) {
+        lua_rawgeti(L, 1, i);
+        const glintL_array *part = glintL_to_array(L, -1);
+        luaL_argcheck(L, part && (i == 1 || part->is_whole == is_whole), 1, "arrays of one kind");
+        count += part->count * part->width;
+        is_whole = part->is_whole;
+    }
+    luaL_argcheck(L, width > 0 && count % (size_t)width == 0, 2, "width of the rows");
+    glintL_array *a = glintL_push_array(L, count / (size_t)width, (size_t)width, is_whole);
+    for (lua_Integer i = 1; i <= parts; i++, lua_pop(L, 1)) {
+        lua_rawgeti(L, 1, i);
+        const glintL_array *part = glintL_to_array(L, -1);
+        memcpy(a->numbers + at, part->numbers, part->count * part->width * sizeof *a->numbers);
+        at += part->count * part->width;
+    }
+    for (size_t i = 0; i < count && is_single; i++)
+        a->numbers[i] = (double)(float)a->numbers[i];
+    return 1;
+}
+
+// ---- Reading and writing ----
+
+static void push_number(lua_State *L, const glintL_array *a, size_t i)
+{
+    if (a->is_whole)
+        lua_pushinteger(L, a->wholes[i]);
+    else
+        lua_pushnumber(L, a->numbers[i]);
+}
+
+static void push_row(lua_State *L, const glintL_array *a, size_t row)
+{
+    if (a->width == 3 && !a->is_whole) {
+        glintL_push_vector(L, a->numbers + 3 * row);
+        return;
+    }
+    if (a->width > 1)
+        lua_createtable(L, (int)a->width, 0);
+    for (size_t c = 0; c < a->width; c++) {
+        push_number(L, a, row * a->width + c);
+        if (a->width > 1)
+            lua_rawseti(L, -2, (lua_Integer)c + 1);
+    }
+}
+
+// Returns the row that is named at `index`, from 0. One beyond the last is allowed if `ends`.
+static size_t check_row(lua_State *L, const glintL_array *a, int index, bool ends)
+{
+    const lua_Integer i = lua_tointeger(L, index);
+    if (!lua_isinteger(L, index) || i < 1 || (size_t)i > a->count + ends) {
+        const char *got = glintL_push_spelling(L, index);
+        glintL_error(L, "array: row 1 .. %I expected, got %s", (LUAI_UACINT)a->count, got);
+    }
+    return (size_t)i - 1;
+}
+
+static void push_column(lua_State *L, const glintL_array *a, size_t column)
+{
+    glintL_array *out = glintL_push_array(L, a->count, 1, a->is_whole);
+    for (size_t i = 0; i < a->count; i++)
+        memcpy(out->numbers + i, a->numbers + i * a->width + column, sizeof *a->numbers);
+}
+
+static int column(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    const lua_Integer c = lua_tointeger(L, 2);
+    if (!lua_isinteger(L, 2) || c < 1 || (size_t)c > a->width)
+        glintL_error(L, "array.column: number 1 .. %I expected, got %s", (LUAI_UACINT)a->width, glintL_push_spelling(L, 2));
+    push_column(L, a, (size_t)c - 1);
+    return 1;
+}
+
+static int read_member(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        const size_t row = check_row(L, a, 2, true);
+        if (row == a->count)
+            lua_pushnil(L); // ends ipairs
+        else
+            push_row(L, a, row);
+        return 1;
+    }
+    static const char letters[] = "xyzrgb";
+    const char *name = lua_tostring(L, 2), *letter = *name && !name[1] ? strchr(letters, *name) : NULL;
+    if (letter && a->width > 1 && (size_t)(letter - letters) % 3 < a->width) {
+        push_column(L, a, (size_t)(letter - letters) % 3);
+        return 1;
+    }
+    if (strcmp(name, "width") == 0) {
+        lua_pushinteger(L, a->width);
+        return 1;
+    }
+    luaL_getmetafield(L, 1, "methods");
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, -2) != LUA_TNIL)
+        return 1;
+    const char *near = glintL_nearer(name, NULL, "width");
+    for (lua_pop(L, 1), lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        near = glintL_nearer(name, near, lua_tostring(L, -2));
+    return glintL_no_such_field(L, "array", name, near);
+}
+
+static int write_member(lua_State *L)
+{
+    glintL_array *a = check_self(L);
+    const size_t row = check_row(L, a, 2, false);
+    lua_settop(L, 3);
+    if (a->width == 1)
+        take_number(L, a, row, row);
+    else
+        take_row(L, a, row);
+    return 0;
+}
+
+static int length(lua_State *L)
+{
+    lua_pushinteger(L, (lua_Integer)check_self(L)->count);
+    return 1;
+}
+
+// slice(first, last, step): a copy of these rows. Negative numbers count from the end.
+static int slice(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    const lua_Integer count = (lua_Integer)a->count;
+    lua_Integer first = luaL_optinteger(L, 2, 1), last = luaL_optinteger(L, 3, count), step = luaL_optinteger(L, 4, 1);
+    first += first < 0 ? count + 1 : 0;
+    last += last < 0 ? count + 1 : 0;
+    if (first < 1 || last > count || step < 1)
+        return glintL_error(L, "array.slice: rows 1 .. %I and a step >= 1 expected, got %I .. %I and %I", (LUAI_UACINT)count,
+                            (LUAI_UACINT)first, (LUAI_UACINT)last, (LUAI_UACINT)step);
+    const size_t rows = last < first ? 0 : (size_t)((last - first) / step) + 1, row = a->width * sizeof *a->numbers;
+    glintL_array *out = glintL_push_array(L, rows, a->width, a->is_whole);
+    for (size_t i = 0; i < rows; i++)
+        memcpy(out->numbers + i * a->width, a->numbers + ((size_t)(first - 1) + i * (size_t)step) * a->width, row);
+    return 1;
+}
+
+// at(rows): the rows with these numbers.
+static int at(lua_State *L)
+{
+    const glintL_array *a = check_self(L), *rows = glintL_to_array(L, 2);
+    if (!rows || !rows->is_whole || rows->width != 1)
+        return glintL_refuse(L, 2, "array.at", "array of whole numbers");
+    glintL_array *out = glintL_push_array(L, rows->count, a->width, a->is_whole);
+    for (size_t i = 0; i < rows->count; i++) {
+        const int64_t row = rows->wholes[i];
+        if (row < 1 || (uint64_t)row > a->count)
+            return glintL_error(L, "array.at: row 1 .. %I expected, got %I", (LUAI_UACINT)a->count, (LUAI_UACINT)row);
+        memcpy(out->numbers + i * a->width, a->numbers + (size_t)(row - 1) * a->width, a->width * sizeof *a->numbers);
+    }
+    return 1;
+}
+
+static int to_table(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    lua_createtable(L, a->count < INT32_MAX ? (int)a->count : INT32_MAX, 0);
+    for (size_t i = 0; i < a->count; i++) {
+        push_row(L, a, i);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
+static int to_string(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    lua_pushfstring(L, "array of %I x %I %s", (LUAI_UACINT)a->count, (LUAI_UACINT)a->width,
+                    a->is_whole ? "integers" : "numbers");
+    return 1;
+}
+
+// ---- Arithmetic ----
+
+// An operand: an array, a number, or one number for each column.
+typedef struct operand {
+    const glintL_array *array;
+    double number[WIDTH_MAX];
+    lua_Integer whole;
+    bool is_whole; // the number is whole, and the other operand is an array of whole numbers
+} operand;
+
+static void read_operand(lua_State *L, int index, const glintL_array *other, const char *sign, operand *out)
+{
+    const double *v = glintL_to_vector(L, index);
+    const size_t width = other ? other->width : 1;
+    out->array = glintL_to_array(L, index);
+    out->is_whole = lua_isinteger(L, index);
+    out->whole = lua_tointeger(L, index);
+    if (out->array) {
+        out->is_whole = out->array->is_whole;
+        return;
+    }
+    const bool is_list = lua_istable(L, index) && lua_rawlen(L, index) == width && width > 1;
+    if (lua_type(L, index) != LUA_TNUMBER && !is_list && !(v && width == 3))
+        glintL_refuse(L, index, sign, width == 1 ? "array or number" : "array, number, or a number for each column");
+    for (size_t c = 0; c < width; c++) {
+        if (is_list) {
+            lua_rawgeti(L, index, (lua_Integer)c + 1);
+            out->number[c] = glintL_read_number(L, -1, sign);
+            lua_pop(L, 1);
+        } else
+            out->number[c] = v ? v[c] : lua_tonumber(L, index);
+    }
+}
+
+static double apply(int op, double a, double b)
+{
+    switch (op) {
+    case LUA_OPADD:
+        return a + b;
+    case LUA_OPSUB:
+        return a - b;
+    case LUA_OPMUL:
+        return a * b;
+    default:
+        return a / b;
+    }
+}
+
+static int64_t apply_whole(int op, int64_t a, int64_t b) // wraps around, as in Lua
+{
+    const uint64_t x = (uint64_t)a, y = (uint64_t)b;
+    return (int64_t)(op == LUA_OPADD ? x + y : op == LUA_OPSUB ? x - y : x * y);
+}
+
+static double operand_at(const operand *o, size_t i, size_t column)
+{
+    return o->array ? number_at(o->array, i) : o->number[column];
+}
+
+int glintL_array_operate(lua_State *L, int op)
+{
+    static const char *const signs[] = {
+        [LUA_OPADD] = "a + b", [LUA_OPSUB] = "a - b", [LUA_OPMUL] = "a * b", [LUA_OPDIV] = "a / b"
+    };
+    const glintL_array *left = glintL_to_array(L, 1), *right = glintL_to_array(L, 2), *any = left ? left : right;
+    operand a, b;
+    if (left && right && (left->count != right->count || left->width != right->width))
+        return glintL_error(L, "%s: arrays of the same size expected, got %I x %I and %I x %I", signs[op],
+                            (LUAI_UACINT)left->count, (LUAI_UACINT)left->width, (LUAI_UACINT)right->count,
+                            (LUAI_UACINT)right->width);
+    read_operand(L, 1, any, signs[op], &a);
+    read_operand(L, 2, any, signs[op], &b);
+    const bool is_whole = a.is_whole && b.is_whole && op != LUA_OPDIV;
+    glintL_array *out = glintL_push_array(L, any->count, any->width, is_whole);
+    for (size_t row = 0, i = 0; row < out->count; row++) {
+        for (size_t c = 0; c < out->width; c++, i++) {
+            if (is_whole)
+                out->wholes[i] = apply_whole(op, a.array ? a.array->wholes[i] : a.whole, b.array ? b.array->wholes[i] : b.whole);
+            else
+                out->numbers[i] = apply(op, operand_at(&a, i, c), operand_at(&b, i, c));
+        }
+    }
+    return 1;
+}
+
+static int add(lua_State *L) { return glintL_array_operate(L, LUA_OPADD); }
+static int subtract(lua_State *L) { return glintL_array_operate(L, LUA_OPSUB); }
+static int multiply(lua_State *L) { return glintL_array_operate(L, LUA_OPMUL); }
+static int divide(lua_State *L) { return glintL_array_operate(L, LUA_OPDIV); }
+
+static int negate(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    glintL_array *out = glintL_push_array(L, a->count, a->width, a->is_whole);
+    for (size_t i = 0; i < a->count * a->width; i++) {
+        if (a->is_whole)
+            out->wholes[i] = apply_whole(LUA_OPSUB, 0, a->wholes[i]);
+        else
+            out->numbers[i] = -a->numbers[i];
+    }
+    return 1;
+}
+
+static int floor_all(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    glintL_array *out = glintL_push_array(L, a->count, a->width, a->is_whole);
+    for (size_t i = 0; i < a->count * a->width; i++) {
+        if (a->is_whole)
+            out->wholes[i] = a->wholes[i];
+        else
+            out->numbers[i] = floor(a->numbers[i]);
+    }
+    return 1;
+}
+
+// bins(low, high, count): 1 .. count, equal parts of low .. high; beyond them the nearest; count + 1 for NaN.
+static int bins(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    const double low = glintL_read_number(L, 2, "array.bins.low"), high = glintL_read_number(L, 3, "array.bins.high");
+    const lua_Integer count = luaL_checkinteger(L, 4);
+    if (!(low < high) || count < 1 || count > STEPS_MAX)
+        return glintL_error(L, "array.bins: low below high and a count >= 1 expected, got %f, %f and %I", low, high,
+                            (LUAI_UACINT)count);
+    const double scale = (double)count / (high - low);
+    glintL_array *out = glintL_push_array(L, a->count, a->width, true);
+    for (size_t i = 0; i < a->count * a->width; i++) {
+        const double share = (number_at(a, i) - low) * scale, last = (double)(count - 1);
+        out->wholes[i] = isnan(share) ? count + 1 : share > 0 ? (int64_t)fmin(share, last) + 1 : 1;
+    }
+    return 1;
+}
+
+// counts(): a list; its n-th number is how often the whole number n occurs.
+static int counts(lua_State *L)
+{
+    const glintL_array *a = check_self(L);
+    if (!a->is_whole || a->width != 1)
+        return glintL_error(L, "array.counts: array of integers expected");
+    lua_newtable(L);
+    for (size_t i = 0, same = 0; i < a->count; i++) {
+        same++;
+        if (i + 1 < a->count && a->wholes[i] == a->wholes[i + 1])
+            continue;
+        lua_rawgeti(L, -1, a->wholes[i]);
+        lua_pushinteger(L, lua_tointeger(L, -1) + (lua_Integer)same);
+        lua_rawseti(L, -3, a->wholes[i]);
+        lua_pop(L, 1);
+        same = 0;
+    }
+    return 1;
+}
+
+// ---- Sums and extremes of each column ----
+
+typedef enum summary { MIN, MAX, SUM, MEAN } summary;
+
+// Returns the sum of a column with the terms that plain addition loses (A. Neumaier, ZAMM 54, 1974).
+static double sum_of(const glintL_array *a, size_t column)
+{
+    double sum = 0, lost = 0;
+    for (size_t i = column; i < a->count * a->width; i += a->width) {
+        const double x = number_at(a, i), next = sum + x;
+        lost += fabs(sum) >= fabs(x) ? (sum - next) + x : (x - next) + sum;
+        sum = next;
+    }
+    return isfinite(sum) ? sum + lost : sum;
+}
+
+// Returns the position of the smallest or largest number of a column; of the first one if all are NaN.
+static size_t extreme(const glintL_array *a, size_t column, bool largest)
+{
+    size_t best = column;
+    for (size_t i = column + a->width; i < a->count * a->width; i += a->width) {
+        bool is_better = a->is_whole ? a->wholes[i] < a->wholes[best] : a->numbers[i] < a->numbers[best];
+        if (largest)
+            is_better = a->is_whole ? a->wholes[i] > a->wholes[best] : a->numbers[i] > a->numbers[best];
+        if (is_better || (!a->is_whole && isnan(a->numbers[best])))
+            best = i;
+    }
+    return best;
+}
+
+static void push_summary(lua_State *L, const glintL_array *a, size_t column, summary what)
+{
+    int64_t whole = 0;
+    if (what == MIN || what == MAX) {
+        push_number(L, a, extreme(a, column, what == MAX));
+    } else if (what == SUM && a->is_whole) {
+        for (size_t i = column; i < a->count * a->width; i += a->width)
+            whole = apply_whole(LUA_OPADD, whole, a->wholes[i]);
+        lua_pushinteger(L, whole);
+    } else
+        lua_pushnumber(L, sum_of(a, column) / (what == MEAN ? (double)a->count : 1));
+}
+
+static int summarize(lua_State *L, summary what, const char *name)
+{
+    const glintL_array *a = check_self(L);
+    if (a->count == 0 && what != SUM)
+        return glintL_error(L, "array.%s: array with at least one row expected", name);
+    if (a->width > 1)
+        lua_createtable(L, (int)a->width, 0);
+    for (size_t c = 0; c < a->width; c++) {
+        push_summary(L, a, c, what);
+        if (a->width > 1)
+            lua_rawseti(L, -2, (lua_Integer)c + 1);
+    }
+    if (a->width == 3) {
+        double v[3];
+        glintL_read_three(L, -1, name, "three numbers", v);
+        glintL_push_vector(L, v);
+    }
+    return 1;
+}
+
+static int min(lua_State *L) { return summarize(L, MIN, "min"); }
+static int max(lua_State *L) { return summarize(L, MAX, "max"); }
+static int sum(lua_State *L) { return summarize(L, SUM, "sum"); }
+static int mean(lua_State *L) { return summarize(L, MEAN, "mean"); }
+
+void glintL_open_array(lua_State *L)
+{
+    static const luaL_Reg meta[] = {
+        { "__index", read_member }, { "__newindex", write_member }, { "__len", length },   { "__tostring", to_string },
+        { "__add", add },           { "__sub", subtract },          { "__mul", multiply }, { "__div", divide },
+        { "__unm", negate },        { NULL, NULL },
+    };
+    const luaL_Reg methods[] = {
+        { "at", at },   { "bins", bins },   { "column", column }, { "counts", counts }, { "floor", floor_all }, { "map", glintL_get_tracing(L)->map_array },
+        { "max", max }, { "mean", mean },   { "min", min },       { "slice", slice },     { "sum", sum },
+        { "table", to_table }, { NULL, NULL },
+    };
+    static const glintL_field fields[] = { { .name = "width" }, { .name = "x" }, { .name = "y" }, { .name = "z" },
+                                           { .name = "r" }, { .name = "g" }, { .name = "b" }, { .name = NULL } };
+    static const glintL_variant variant = { .name = "array", .fields = fields };
+    glintL_new_type(L, GLINTL_ARRAY, meta);
+    luaL_getmetatable(L, GLINTL_ARRAY);
+    lua_newtable(L);
+    luaL_setfuncs(L, methods, 0);
+    lua_setfield(L, -2, "methods");
+    lua_pop(L, 1);
+    glintL_list_variant(L, &variant, methods);
+    glintL_set_function(L, "array", new_array);
+    glintL_set_function(L, "_join", join);
+}
