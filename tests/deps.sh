@@ -32,6 +32,7 @@ libmpfr-dev     module:mpfr
 lua5.4          command:lua5.4|lua-5.4|lua54
 '
 test_optional='
+locales         file:/usr/share/i18n/locales/de_DE
 librsvg2-bin    command:rsvg-convert
 poppler-utils   command:pdftoppm
 python3-numpy   file:/usr/lib/python3/dist-packages/numpy

@@ -1,3 +1,4 @@
+#include "engine/base/number.h"
 #include "engine/base/status.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@ glint_status glint_fail(glint_error *error, glint_status status, const char *for
     if (error) {
         va_list args;
         va_start(args, format);
-        vsnprintf(error->message, sizeof error->message, format, args);
+        glint_print_list(error->message, sizeof error->message, format, args);
         va_end(args);
         error->status = status;
     }

@@ -1,3 +1,4 @@
+#include "engine/base/number.h"
 #include "engine/file/hdr.h"
 
 #include "engine/base/status.h"
@@ -44,11 +45,18 @@ static glint_status read_variable(hdr_input *in, const char *line, glint_error *
     double by[3];
     if (strncmp(line, "FORMAT=", 7) == 0 && strcmp(line + 7, "32-bit_rle_rgbe") != 0)
         return glint_fail(error, GLINT_ERR_FORMAT, "FORMAT: 32-bit_rle_rgbe expected, got %.60s", line + 7);
-    const bool exposure = sscanf(line, "EXPOSURE=%lf", &by[0]) == 1;
-    if (!exposure && sscanf(line, "COLORCORR=%lf %lf %lf", &by[0], &by[1], &by[2]) != 3)
+    const bool exposure = strncmp(line, "EXPOSURE=", 9) == 0;
+    if (!exposure && strncmp(line, "COLORCORR=", 10) != 0)
         return GLINT_OK;
+    const char *at = line + (exposure ? 9 : 10);
+    char *end;
+    for (int c = 0; c < 3; c++, at = end) {
+        by[c] = exposure && c > 0 ? by[0] : glint_read_double(at, &end);
+        if (end == at && !(exposure && c > 0))
+            return GLINT_OK;
+    }
     for (int c = 0; c < 3; c++)
-        in->gain[c] *= by[exposure ? 0 : c];
+        in->gain[c] *= by[c];
     return GLINT_OK;
 }
 

@@ -1,3 +1,4 @@
+#include "engine/base/number.h"
 #include "engine/file/pfm.h"
 
 #include "engine/base/status.h"
@@ -91,7 +92,7 @@ static bool parse_header(const uint8_t *data, size_t size, glint_pfm *pfm, bool 
         return false;
     pfm->channels = word[0][1] == 'F' ? 3 : 1;
     char *end;
-    double scale = strtod(word[3], &end);
+    double scale = glint_read_double(word[3], &end);
     *little = scale < 0;
     return parse_side(word[1], &pfm->width) && parse_side(word[2], &pfm->height) && *end == '\0' &&
            (scale < 0 || scale > 0);

@@ -1,5 +1,6 @@
 /// Writes .svg. The text is in `text` elements, so that readers can select and search it; cairo's SVG has the outlines
 /// of letters only. Therefore this file needs only the libraries that a PNG needs.
+#include "engine/base/number.h"
 #include "engine/file/figure.h"
 
 #include "engine/base/status.h"
@@ -36,7 +37,7 @@ __attribute__((format(printf, 2, 3))) static void put(svg *s, const char *format
     char text[512];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    glint_print_list(text, sizeof text, format, list);
     va_end(list);
     put_string(s, text);
 }

@@ -1,4 +1,5 @@
 /// Warnings about overlays that a picture cannot show as described.
+#include "engine/base/number.h"
 #include "engine/overlay/layout.h"
 
 #include "engine/text/font.h"
@@ -146,7 +147,7 @@ static void check_pointer(const check *c)
         return;
     }
     if (is_line && glint_pointer_is_point(l->desc)) {
-        snprintf(message, sizeof message, "to: expected a point other than from {%.15g, %.15g, %.15g}; it is not drawn", l->desc->from[0],
+        glint_print(message, sizeof message, "to: expected a point other than from {%.15g, %.15g, %.15g}; it is not drawn", l->desc->from[0],
                  l->desc->from[1], l->desc->from[2]);
         warn(c, message);
     } else if (p->behind[0] || p->behind[1]) {

@@ -1,3 +1,4 @@
+#include "engine/base/number.h"
 #include "engine/overlay/marks.h"
 
 #include <float.h>
@@ -40,9 +41,9 @@ void glint_marks_add(glint_marks *marks, const glint_typeface *typeface, const g
     m->share = glint_scale_share(scale, value);
     value = value == 0 ? 0 : value; // turns -0 into 0
     if (decimals < 0 || decimals > 6 || fabs(value) >= 1e7)
-        snprintf(m->text, sizeof m->text, "%.6g", value);
+        glint_print(m->text, sizeof m->text, "%.6g", value);
     else
-        snprintf(m->text, sizeof m->text, "%.*f", decimals, value);
+        glint_print(m->text, sizeof m->text, "%.*f", decimals, value);
     m->width = glint_typeface_width(typeface, m->text, strlen(m->text));
     marks->widest = m->width > marks->widest ? m->width : marks->widest;
     marks->count++;

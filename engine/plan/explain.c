@@ -1,3 +1,4 @@
+#include "engine/base/number.h"
 #include "engine/base/status.h"
 #include "engine/effects/environment/plan.h"
 #include "engine/scene/area_light.h"
@@ -239,7 +240,7 @@ static void one(explainer *e, bool called, const char *effect, const char *forma
     char caller[2 * GLINT_NAME_SIZE];
     va_list args;
     va_start(args, format);
-    vsnprintf(caller, sizeof caller, format, args);
+    glint_print_list(caller, sizeof caller, format, args);
     va_end(args);
     add_line(e, effect, caller);
 }

@@ -1,4 +1,5 @@
 /// A program as text.
+#include "engine/base/number.h"
 #include "engine/program/program.h"
 
 #include <stdarg.h>
@@ -23,7 +24,7 @@ static __attribute__((format(printf, 2, 3))) void put(text *t, const char *forma
         t->capacity += t->capacity / 2 + 1024;
     }
     va_start(args, format);
-    t->size += (size_t)vsnprintf(t->bytes + t->size, 256, format, args);
+    t->size += (size_t)glint_print_list(t->bytes + t->size, 256, format, args);
     va_end(args);
 }
 
@@ -32,8 +33,8 @@ static void put_number(text *t, double number)
 {
     char shortest[40];
     for (int digits = 1; digits <= 17; digits++) {
-        snprintf(shortest, sizeof shortest, "%.*g", digits, number);
-        if (strtod(shortest, NULL) == number)
+        glint_print(shortest, sizeof shortest, "%.*g", digits, number);
+        if (glint_read_double(shortest, NULL) == number)
             break;
     }
     put(t, " %s", shortest);

@@ -1,3 +1,4 @@
+#include "engine/base/number.h"
 #include "engine/scene/fields.h"
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
@@ -35,7 +36,7 @@ static glint_status check_number(const glint_object_field *f, double v, glint_er
     char range[64];
     if (!f->expected && f->low == f->high)
         return GLINT_OK;
-    snprintf(range, sizeof range, "number %.15g .. %.15g", f->low, f->high);
+    glint_print(range, sizeof range, "number %.15g .. %.15g", f->low, f->high);
     return glint_check_range(f->name, v, f->low, f->high, f->expected ? f->expected : range, error);
 }
 

@@ -6,7 +6,6 @@
 #include <stdio.h>
 
 #include "engine/base/hash.h"
-#include "engine/base/number.h"
 #include "engine/glint.h"
 
 /// An array that grows.
@@ -37,7 +36,6 @@ typedef struct glint_mesh_text {
     long start; ///< offset where the text starts, after a byte order mark
     bool lone_returns; ///< whether lines end in CR without LF
     size_t skipped; ///< number of empty lines that were ignored after the current line
-    locale_t c_locale; ///< a locale with decimal points, whatever the script's locale
     char *line;
     size_t capacity, longest; ///< bytes of `line`: its capacity, and the limit of the capacity
     size_t number; ///< number of the current line, from 1
@@ -58,7 +56,7 @@ glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more
 glint_status glint_mesh_refuse(const glint_mesh_text *text, const char *expected, const char *got);
 /// Reads a number as strtod does, with a decimal point. Also accepts exponents as written by Fortran (1.5D+03) and
 /// NaN and infinity as written by Windows (-1.#IND). *end: the position after the number, or `at` if there is none.
-double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const char **end);
+double glint_mesh_read_double(const char *at, const char **end);
 /// Reads a finite number at *at and moves *at past it. It ends at a blank, a comment (#) or the end of the line.
 glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out);
 

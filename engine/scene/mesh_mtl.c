@@ -1,4 +1,5 @@
 /// Reads the material files that .obj files name: the statements Kd, Ks, Ns, d ..., and names of pictures.
+#include "engine/base/number.h"
 #include "engine/scene/mesh_entry.h"
 
 #include "engine/base/status.h"
@@ -60,7 +61,7 @@ static glint_status read_range(const glint_mesh_text *text, const char *at, doub
     glint_status status = glint_mesh_number(text, &at, &number);
     if (status)
         return status;
-    snprintf(expected, sizeof expected, most < 1e300 ? "a number 0 .. %g" : "a number >= 0", most);
+    glint_print(expected, sizeof expected, most < 1e300 ? "a number 0 .. %g" : "a number >= 0", most);
     if (!(number >= 0 && number <= most))
         return glint_mesh_refuse(text, expected, start);
     *out = number;
@@ -83,13 +84,13 @@ static int option_words(const char *at)
 }
 
 /// Reads the numbers of -o and -s; numbers after the first may be missing.
-static const char *skip_option(const glint_mesh_text *text, const char *at, int words, double *numbers)
+static const char *skip_option(const char *at, int words, double *numbers)
 {
     while (!glint_ends_word(*at))
         at++;
     for (int i = 0; i < words; i++) {
         const char *end, *word = glint_skip_blanks(at);
-        const double number = glint_mesh_read_double(text, word, &end);
+        const double number = glint_mesh_read_double(word, &end);
         const bool is_number = end != word && glint_ends_word(*end);
         if (words == 3 && i > 0 && !is_number)
             break;
@@ -109,12 +110,12 @@ typedef struct map_options {
 } map_options;
 
 /// Reads options up to the first word that is not an option, and returns the position of that word.
-static const char *read_options(const glint_mesh_text *text, const char *at, map_options *o, ignored_parts *ignored)
+static const char *read_options(const char *at, map_options *o, ignored_parts *ignored)
 {
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
         double mm[2] = { 0, 1 };
-        at = skip_option(text, at, words,
+        at = skip_option(at, words,
                          glint_mesh_is_word(at, "-o")    ? o->mapping.offset
                          : glint_mesh_is_word(at, "-s")  ? o->mapping.scale
                          : glint_mesh_is_word(at, "-bm") ? &o->height
@@ -146,9 +147,9 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, glint_
                              glint_mesh_entry *to, ignored_parts *ignored)
 {
     map_options o = { .mapping = to->mapping[kind] };
-    at = read_options(text, glint_skip_blanks(at), &o, ignored);
+    at = read_options(glint_skip_blanks(at), &o, ignored);
     const char *end = find_name_end(at);
-    read_options(text, glint_skip_blanks(end), &o, ignored);
+    read_options(glint_skip_blanks(end), &o, ignored);
     if (end == at)
         return glint_mesh_refuse(text, "the name of a picture", at);
     char *name = strndup(at, (size_t)(end - at)), *path = name ? glint_mesh_sibling(text->path, name) : NULL;
@@ -215,7 +216,7 @@ static glint_status read_one(const glint_mesh_text *text, const char *at, glint_
 }
 
 /// Returns whether a statement has no effect: all its numbers are 0, or 1 for the transmission filter Tf.
-static bool says_nothing(const glint_mesh_text *text, const char *at)
+static bool says_nothing(const char *at)
 {
     const bool is_tf = glint_mesh_is_word(at, "Tf");
     while (!glint_ends_word(*at))
@@ -225,7 +226,7 @@ static bool says_nothing(const glint_mesh_text *text, const char *at)
         return false;
     for (; *at && *at != '#'; at = glint_skip_blanks(at)) {
         const char *end;
-        const double number = glint_mesh_read_double(text, at, &end);
+        const double number = glint_mesh_read_double(at, &end);
         if (!(number == 0 || (is_tf && number == 1)) || end == at || !glint_ends_word(*end))
             return false;
         at = end;
@@ -235,13 +236,13 @@ static bool says_nothing(const glint_mesh_text *text, const char *at)
 
 /// Notes an unsupported statement. Some statements are ignored without a note: Ka because ambient follows Kd, and
 /// sharpness because it only matters together with another unsupported statement.
-static void note_word(const glint_mesh_text *text, const char *at, ignored_parts *ignored)
+static void note_word(const char *at, ignored_parts *ignored)
 {
     static const char *const silent[] = { "Ka", "map_Ka", "sharpness", "Km" };
     for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
         if (glint_mesh_is_word(at, silent[i]))
             return;
-    if (*at && *at != '#' && !says_nothing(text, at))
+    if (*at && *at != '#' && !says_nothing(at))
         add_word(at, ignored);
 }
 
@@ -261,7 +262,7 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, glin
             status = read_picture(text, at, to, ignored, &known);
     }
     if (!known)
-        note_word(text, at, ignored);
+        note_word(at, ignored);
     return status;
 }
 

@@ -1,4 +1,5 @@
 /// Warnings of the mesh readers, and normals of length 0.
+#include "engine/base/number.h"
 #include "engine/scene/mesh_file.h"
 
 #include "engine/base/vec.h"
@@ -14,7 +15,7 @@ void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *
     const int used = snprintf(message, sizeof message / 2, "%.240s: ", path);
     va_list args;
     va_start(args, format);
-    vsnprintf(message + used, sizeof message - (size_t)used, format, args);
+    glint_print_list(message + used, sizeof message - (size_t)used, format, args);
     va_end(args);
     desc->warns(desc->context, message);
 }
@@ -27,7 +28,7 @@ void glint_mesh_note_that(glint_mesh_reader *reader, glint_mesh_note_kind kind, 
         return;
     note->line = line;
     va_start(args, format);
-    vsnprintf(note->first, sizeof note->first, format, args);
+    glint_print_list(note->first, sizeof note->first, format, args);
     va_end(args);
 }
 

@@ -36,7 +36,7 @@ static glint_status read_numbers(reader *r, const char **at, int count, double v
         *at = glint_skip_blanks(*at);
         if (count == 2 && i == 1 && (!**at || **at == '#'))
             break;
-        v[i] = glint_mesh_read_double(&r->text, *at, &end);
+        v[i] = glint_mesh_read_double(*at, &end);
         if (end == *at || !glint_ends_number(*end))
             return complain(r, "a number", *at);
         *at = end;
@@ -62,7 +62,7 @@ static glint_status read_color(reader *r, const char *at)
     for (int i = 0; i < 3; i++) {
         const char *end;
         at = glint_skip_blanks(at);
-        v[i] = glint_mesh_read_double(&r->text, at, &end);
+        v[i] = glint_mesh_read_double(at, &end);
         if (end == at || !glint_ends_number(*end))
             return GLINT_OK;
         good = good && v[i] >= 0 && v[i] <= 255;

@@ -1,5 +1,6 @@
 /// Reads PLY files: a header that describes the numbers of each vertex and face, then the numbers, as text or binary
 /// in either byte order.
+#include "engine/base/number.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/mesh_ply.h"
@@ -105,7 +106,7 @@ static glint_status read_word(body *b, double *out)
     glint_status status = *b->at ? GLINT_OK : next_line(b);
     if (status)
         return status;
-    *out = glint_mesh_read_double(&b->reader->text, b->at, &end);
+    *out = glint_mesh_read_double(b->at, &end);
     if (end != b->at && glint_ends_word(*end)) {
         b->at = end;
         return GLINT_OK;
@@ -129,8 +130,8 @@ static glint_status check_whole(body *b, double number, double most, const char 
         *out = (uint32_t)number;
         return GLINT_OK;
     }
-    snprintf(expected, sizeof expected, "%s 0 .. %.0f", field, most);
-    snprintf(got, sizeof got, "%.15g", number);
+    glint_print(expected, sizeof expected, "%s 0 .. %.0f", field, most);
+    glint_print(got, sizeof got, "%.15g", number);
     return fail_at(b, expected, got);
 }
 
@@ -278,7 +279,7 @@ static glint_status add_color(body *b, const double v[GLINT_PLY_NUMBERS])
     for (int c = 0; c < 3; c++) {
         const double code = v[GLINT_PLY_RED + c];
         if (!(code >= 0 && code <= 255 && code == floor(code))) { // text files may contain such numbers
-            snprintf(got, sizeof got, "%.15g", code);
+            glint_print(got, sizeof got, "%.15g", code);
             return fail_at(b, "a colour value 0 .. 255", got);
         }
         codes[c] = (uint8_t)code;

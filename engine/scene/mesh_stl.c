@@ -116,7 +116,7 @@ static glint_status read_statement(glint_mesh_reader *r, const char *at, state *
         at += sizeof "vertex" - 1;
         for (int c = 0; c < 3; c++) {
             const char *end, *word = glint_skip_blanks(at);
-            s->corners[step - 2][c] = glint_mesh_read_double(&r->text, word, &end);
+            s->corners[step - 2][c] = glint_mesh_read_double(word, &end);
             if (end == word || !glint_ends_word(*end))
                 return glint_mesh_refuse(&r->text, "a number", word);
             at = end;

@@ -1,6 +1,7 @@
 /// Shared by the readers of mesh files: growing arrays, and the lines of a file.
 #include "engine/scene/mesh_file.h"
 
+#include "engine/base/number.h"
 #include "engine/base/open.h"
 #include "engine/base/status.h"
 
@@ -89,8 +90,7 @@ glint_status glint_mesh_text_open(glint_mesh_text *text, const char *path, glint
     if (!text->file)
         close(file);
     text->line = malloc(text->capacity);
-    text->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!text->file || !text->line || !text->c_locale)
+    if (!text->file || !text->line)
         return glint_fail_nomem(error);
     text->begin_bytes = fread(text->begin, 1, sizeof text->begin, text->file);
     text->start = text->begin_bytes >= 3 && memcmp(text->begin, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
@@ -106,8 +106,6 @@ void glint_mesh_text_close(glint_mesh_text *text)
 {
     if (text->file)
         fclose(text->file);
-    if (text->c_locale)
-        freelocale(text->c_locale);
     free(text->line);
 }
 
@@ -183,7 +181,7 @@ glint_status glint_mesh_next_line(glint_mesh_text *text, bool joined, bool *more
 
 /// Reads a number again after replacing Fortran's exponents, with a D or without a letter, by exponents with E:
 /// 1.5D+03, 1.5-103.
-static double read_fortran(const glint_mesh_text *text, const char *at, const char **end)
+static double read_fortran(const char *at, const char **end)
 {
     char copy[64], *copy_end;
     const size_t length = strcspn(at, " \t#"), mantissa = (size_t)(*end - at);
@@ -192,17 +190,17 @@ static double read_fortran(const glint_mesh_text *text, const char *at, const ch
     if (mantissa == 0 || length + 2 > sizeof copy || !(has_d || *exponent == '+' || *exponent == '-'))
         return NAN;
     snprintf(copy, sizeof copy, "%.*se%.*s", (int)mantissa, at, (int)(length - (size_t)(exponent - at)), exponent);
-    const double number = glint_read_double(copy, &copy_end, text->c_locale);
+    const double number = glint_read_double(copy, &copy_end);
     if (!*copy_end)
         *end = at + length;
     return number;
 }
 
-double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const char **end)
+double glint_mesh_read_double(const char *at, const char **end)
 {
     static const char *const none[] = { "#IND", "#INF", "#QNAN", "#SNAN" };
     char *stop;
-    const double number = glint_read_double(at, &stop, text->c_locale);
+    const double number = glint_read_double(at, &stop);
     *end = stop;
     if (stop == at || glint_ends_word(*stop))
         return number;
@@ -211,14 +209,14 @@ double glint_mesh_read_double(const glint_mesh_text *text, const char *at, const
             *end = stop + strcspn(stop, " \t");
             return NAN;
         }
-    return *stop == '#' ? number : read_fortran(text, at, end);
+    return *stop == '#' ? number : read_fortran(at, end);
 }
 
 glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, double *out)
 {
     const char *end;
     *at = glint_skip_blanks(*at);
-    *out = glint_mesh_read_double(text, *at, &end);
+    *out = glint_mesh_read_double(*at, &end);
     if (end == *at || !glint_ends_number(*end))
         return glint_mesh_refuse(text, "a number", *at);
     if (!isfinite(*out))

@@ -10,6 +10,7 @@
 ///     n             label       label
 ///
 /// A colour bar for all pictures is at the right, or below.
+#include "engine/base/number.h"
 #include "engine/base/status.h"
 #include "engine/file/figure.h"
 #include "engine/overlay/overlay.h"
@@ -75,7 +76,7 @@ static void draw_difference(glint_sheet_layout *l, canvas *paper, size_t a, size
     if (a == b)
         snprintf(label, sizeof label, "cell %zu", b + 1);
     else
-        snprintf(label, sizeof label, "max %d\n%.3g %%", most, 100.0 * (double)count / ((double)l->width * l->height));
+        glint_print(label, sizeof label, "max %d\n%.3g %%", most, 100.0 * (double)count / ((double)l->width * l->height));
     glint_sheet_label(l, label, l->column, true, ax - (l->column - l->width) / 2, y + l->height + glint_sheet_pixels(l, 4));
 }
 

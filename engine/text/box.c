@@ -1,4 +1,5 @@
 /// The boxes of a formula, made of runs and rules.
+#include "engine/base/number.h"
 #include "engine/text/setter.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@ void glint_setter_fail(glint_setter *s, const char *at, const char *format, ...)
     va_list arguments;
     if (!s->fault->at) {
         va_start(arguments, format);
-        vsnprintf(s->fault->message, sizeof s->fault->message, format, arguments);
+        glint_print_list(s->fault->message, sizeof s->fault->message, format, arguments);
         va_end(arguments);
         s->fault->at = at;
     }

@@ -113,5 +113,42 @@ if "$glint" --version --verbose | grep -q '\.pdf'; then
 else
     check "no cairo" refuses 'this build has no cairo' figure.lua -o none.pdf
 fi
+
+# A program that has called setlocale: numbers have points in every file that is read and written. The locale is made here
+# from the sources of Debian's package `locales`.
+if localedef -i de_DE -f UTF-8 "$work/de_DE.UTF-8" 2>/dev/null; then
+    cat >numbers.lua <<'LUA'
+local glint = require "glint"
+local name, place = arg[1], arg[2]
+assert(place == "C" or os.setlocale "de_DE.UTF-8", "no locale")
+assert(place == "C" or not tostring(1.5):find("1.5", 1, true), "the locale has commas")
+local function write(path, text) assert(io.open(path, "wb")):write(text):close() end
+write("half.obj", "mtllib half.mtl\nv -1.5 0 0\nv 1.5 0.5 0\nv 0 1.25 0\nusemtl a\nf 1 2 3\n")
+write("half.mtl", "newmtl a\nKd 0.5 0.25 0.125\n")
+write("half.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0.5\n\n-Y 1 +X 1\n\128\128\128\129")
+write("half.pfm", "Pf\n1 1\n-0.5\n" .. string.pack("<f", 0.5))
+local half = { diffuse = glint.texture { file = "half.hdr" }, specular = glint.texture { file = "half.pfm" } }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0.5, 9 }, at = { 0, 0.5, 0 } }, ambient = 0.5,
+  glint.mesh { file = "half.obj" },
+  glint.sphere { center = { 0.5, 2, 0 }, radius = 0.75, material = glint.material(half) },
+  glint.axes { box = { { -1.5, 0, -0.5 }, { 1.5, 1.25, 0.5 } } }, glint.colorbar { map = "magma", low = -0.5, high = 0.25 } }
+local message = select(2, pcall(glint.sphere, { center = { 0, 0, 0 }, radius = -0.5 }))
+assert(message:find("got -0.5", 1, true), message)
+local patterns = tostring(glint.pattern(function(p) return p.x * 0.1 end))
+assert(not patterns:find "0,1", patterns)
+for _, ending in ipairs { "png", "svg", "pdf", "pfm" } do
+  if ending ~= "pdf" or pcall(scene.render, scene, { width = 8, height = 8, output = "try.pdf" }) then
+    scene:render { width = 160, height = 120, output = name .. "." .. ending }
+  end
+end
+assert(place == "C" or not tostring(1.5):find("1.5", 1, true), "the program's locale is as it was")
+LUA
+    for place in C de_DE.UTF-8; do
+        check "numbers in the locale $place" env LOCPATH="$work" LC_ALL=C LD_PRELOAD="${PRELOAD:-}" "${LUA:-lua5.4}" numbers.lua "$place" "$place"
+    done
+    for file in C.*; do check "the same ${file#C.} in a locale with commas" cmp "$file" "de_DE.UTF-8.${file#C.}"; done
+else
+    echo "skip: no sources of locales (Debian: locales)"
+fi
 echo "$good passed, $bad failed"
 [ "$bad" -eq 0 ]
