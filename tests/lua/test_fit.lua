@@ -33,6 +33,42 @@ function tests.an_image_gives_its_numbers()
   check(found.converged and found.steps < 15 and found.error < 1e-6, "%d steps, error %g", found.steps, found.error)
 end
 
+-- The light of the ball is power x diffuse, or the sum of two lamps at one place: the picture cannot tell them apart.
+function tests.numbers_that_a_picture_cannot_tell_apart()
+  local matt = glint.material { diffuse = 0.5, ambient = 0 }
+  local second = glint.point_light { position = { 2, 1.5, 3 } }
+  local ball = glint.scene { lamp, second, glint.sphere { center = { 0, 0, 0 }, radius = 1, material = matt },
+    camera = glint.camera { eye = { 0, 0, 6 }, at = { 0, 0, 0 }, fov = 30 } }
+  local function look(v, passes)
+    lamp.position, lamp.intensity, second.intensity = { v.x or 2, 1.5, 3 }, v.power or 1, v.second or 0
+    matt.diffuse = v.diffuse or 0.5
+    return ball:render { width = 40, height = 30, passes = passes }
+  end
+  local cases = {
+    { "only the product of power and diffuse", { { "power", 1.5 }, { "diffuse", 0.7 } }, { power = 1.2, diffuse = 0.6 } },
+    { "only the product of power and diffuse", { { "power", 1.5 }, { "x", 1 }, { "diffuse", 0.7 } },
+      { power = 1.2, diffuse = 0.6, x = 2 }, "x" },
+    { "only the sum of power and second", { { "power", 1.5 }, { "second", 0.4 } }, { power = 1.2, second = 0.6 } },
+    { "only a combination of power and diffuse; only the sum of power and second", { { "power", 1.5 }, { "diffuse", 0.7 }, { "second", 0.4 } },
+      { power = 1.2, diffuse = 0.6, second = 0.7 } },
+    { nil, { { "power", 1.5 }, { "x", 1 } }, { power = 1.2, x = 2 }, "x" },
+  }
+  for _, case in ipairs(cases) do
+    local want, start, truth, known = table.unpack(case, 1, 4)
+    local found = fit.run { target = look(truth), start = start, render = look }
+    local as = want or "all numbers"
+    check(found.error < 1e-5, "%s: error %g", as, found.error)
+    local got = table.concat(found.undetermined, "; ")
+    check(got == (want or ""), "%s: got %s", as, got)
+    check(found.converged == (want == nil), "%s: converged is %s", as, found.converged)
+    for name, uncertainty in pairs(found.uncertainty) do
+      check((uncertainty == math.huge) == (want ~= nil and name ~= known), "%s: the uncertainty of %s is %g", as, name,
+        uncertainty)
+    end
+    if known then check(math.abs(found.values[known] - truth[known]) < 1e-4, "%s: %s is %.9g", as, known, found.values[known]) end
+  end
+end
+
 -- An 8-bit photo is coarse: the parameters are approximate, and the iteration stops on its own.
 function tests.a_photo_gives_them()
   assert(render(TRUE):save(PATH))

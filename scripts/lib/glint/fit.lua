@@ -12,7 +12,8 @@
 --     }
 --     print(found.values.lamp_x, found.uncertainty.lamp_x, found.converged)
 -- The uncertainty of a number is its standard deviation, if the remaining differences are independent noise: it shows
--- how well the picture determines the number. Values of a .png at full white are clipped and ignored.
+-- how well the picture determines the number. `found.undetermined` names numbers that the picture cannot tell apart.
+-- Values of a .png at full white are clipped and ignored.
 local glint = require "glint"
 local fit = {}
 
@@ -138,12 +139,75 @@ local function by_name(names, v)
   return out
 end
 
--- Returns standard deviations: the variance of the residual times the inverse of the normal equations.
-local function uncertainties(e, count)
-  local inverted, out = inverse(e.a), {}
-  local variance = e.sum / math.max(e.used - count, 1)
-  for i = 1, count do out[i] = inverted and math.sqrt(math.max(variance * inverted[i][i], 0)) or math.huge end
+-- Below this share of its squared slope, a number's effect on the picture is that of the other numbers: slopes have 24
+-- bits.
+local SAME <const> = 2.0 ^ -36
+
+local function submatrix(a, rows)
+  local out = {}
+  for i, row in ipairs(rows) do
+    out[i] = {}
+    for j, column in ipairs(rows) do out[i][j] = a[row][column] end
+  end
   return out
+end
+
+-- Describes a change of the numbers that does not change the picture: by[i] is the change of number i.
+local function describe(by, names, v)
+  local changed = {}
+  for i = 1, #names do
+    if by[i] and math.abs(by[i]) > 1e-3 * math.max(math.abs(v[i]), 1e-9) then changed[#changed + 1] = i end
+  end
+  if #changed == 1 then return "the picture does not change with " .. names[changed[1]] end
+  local i, j = changed[1], changed[2]
+  local function is_near(x, want) return math.abs(x - want) < 1e-3 end
+  local what = "a combination"
+  if #changed == 2 then
+    local ratio, share = by[i] / by[j], by[i] / v[i] / (by[j] / v[j])
+    local is_sum, is_product = is_near(math.abs(ratio), 1), is_near(math.abs(share), 1)
+    if is_sum ~= is_product then -- otherwise both describe a small change equally well
+      what = is_sum and (ratio < 0 and "the sum" or "the difference") or share < 0 and "the product" or "the ratio"
+    end
+  end
+  local list = {}
+  for k, number in ipairs(changed) do list[k] = names[number] end
+  local last = table.remove(list)
+  return "only " .. what .. " of " .. table.concat(list, ", ") .. " and " .. last
+end
+
+-- Returns standard deviations: the variance of the residual times the inverse of the normal equations; math.huge for
+-- numbers that the picture does not determine. Also returns a sentence for each direction that it does not determine.
+local function uncertainties(e, names, v)
+  local count, rows, out, sentences, free = #v, {}, {}, {}, {}
+  local scale, c = {}, {}
+  for i = 1, count do scale[i] = math.sqrt(e.a[i][i]) end
+  for i = 1, count do
+    c[i] = {}
+    for j = 1, count do c[i][j] = scale[i] > 0 and scale[j] > 0 and e.a[i][j] / scale[i] / scale[j] or 0 end
+  end
+  for j = 1, count do -- takes number j as a combination of the rows before it, as well as that is possible
+    local inverted, by, rest = inverse(submatrix(c, rows)), {}, c[j][j]
+    for i, row in ipairs(rows) do
+      local share = 0
+      for k, other in ipairs(rows) do share = share + inverted[i][k] * c[other][j] end
+      by[row], rest = -share / scale[row], rest - share * c[row][j]
+    end
+    if rest > SAME then
+      rows[#rows + 1] = j
+    else
+      by[j] = scale[j] > 0 and 1 / scale[j] or math.max(math.abs(v[j]), 1)
+      sentences[#sentences + 1], free[j] = describe(by, names, v), true
+      for i, change in pairs(by) do
+        if math.abs(change) > 1e-3 * math.max(math.abs(v[i]), 1e-9) then free[i] = true end
+      end
+    end
+  end
+  local inverted, variance = inverse(submatrix(e.a, rows)), e.sum / math.max(e.used - count, 1)
+  for i = 1, count do out[i] = math.huge end
+  for k, i in ipairs(rows) do
+    if not free[i] and inverted then out[i] = math.sqrt(math.max(variance * inverted[k][k], 0)) end
+  end
+  return out, sentences
 end
 
 local function is_small(v, tried, tolerance)
@@ -157,7 +221,9 @@ end
 ---@param options table  target; start, a list of { name, number, least = x, most = y }; render(values, passes), which
 --- sets the scene and returns its image with these passes; steps (20); tolerance (1e-6), the share of a number below
 --- which a step has converged; report(k, values, error, damping), called at each step
----@return table found  values and uncertainty by names; error, the root of the mean square difference; steps; converged
+---@return table found  values and uncertainty by names; error, the root of the mean square difference; steps;
+--- converged; undetermined, a list of sentences such as "only the product of power and diffuse", empty if the picture
+--- determines every number. The uncertainty of the others is math.huge, and the fit has not converged
 function fit.run(options)
   check(options)
   local entries, names, v = options.start, {}, {}
@@ -191,8 +257,9 @@ function fit.run(options)
     report()
     if damping > DAMPING_MAX then break end
   end
-  return { values = by_name(names, v), uncertainty = by_name(names, uncertainties(e, #v)), error = e.error,
-    steps = steps, converged = converged or e.error <= 1e-7 }
+  local uncertainty, undetermined = uncertainties(e, names, v)
+  return { values = by_name(names, v), uncertainty = by_name(names, uncertainty), error = e.error, steps = steps,
+    undetermined = undetermined, converged = #undetermined == 0 and (converged or e.error <= 1e-7) }
 end
 
 return fit
