@@ -165,11 +165,7 @@ static bool convert_slowly(const char *text, size_t length, double *out)
         copy[count++] = c;
     }
     copy[count] = '\0';
-    const locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!plain)
-        return false;
-    *out = glint_read_double(copy, &end, plain);
-    freelocale(plain);
+    *out = glint_read_double(copy, &end);
     return end == copy + count;
 }
 
