@@ -6,6 +6,7 @@
 #include "bindings/command/cli.h"
 #include "bindings/run/system.h"
 
+#define SLOW_MS 10 // a line of a frame tells the time of a script that takes longer
 #define CLIPPED_HINT 0.1 // share of clipped pixels above which a picture looks washed out
 
 // Ends a line of data. If the reader has gone or the disk is full, the run ends.
@@ -130,7 +131,11 @@ static void print_frame_line(cli_output *output, const glintL_record *record)
     fprintf(stderr, "frame %" PRId64, record->index);
     if (record->repeat)
         fprintf(stderr, ", repeat %d", record->repeat);
-    fprintf(stderr, ": %s%s%.1f ms", file ? file : "", file ? ", " : "", ms);
+    fprintf(stderr, ": %s%s", file ? file : "", file ? ", " : "");
+    if (record->build_ms >= SLOW_MS)
+        fprintf(stderr, "script %.2f s, render %.2f s", record->build_ms * 1e-3, ms * 1e-3);
+    else
+        fprintf(stderr, "%.1f ms", ms);
     if (record->samples > 0)
         fprintf(stderr, ", %.0f samples, error %.3g", record->samples, record->error);
     fputc('\n', stderr);

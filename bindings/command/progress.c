@@ -88,8 +88,9 @@ static void draw(cli_progress *progress)
         format_time(remaining, ((double)progress->todo - (double)progress->done - now) / rate);
     if (progress->samples > 0)
         snprintf(samples, sizeof samples, ", %.0f samples: error %.2g", progress->samples, progress->error);
-    snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
-             *remaining ? ", " : "", remaining, *remaining ? " left" : "", samples);
+    snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
+             *remaining ? ", " : "", remaining, *remaining ? " left" : "", samples,
+             progress->renderer ? "" : ", in the script");
     draw_line(progress, share, text);
 }
 

@@ -506,6 +506,16 @@ static double sum_of(const glintL_array *a, size_t column)
 static size_t extreme(const glintL_array *a, size_t column, bool largest)
 {
     size_t best = column;
+    if (a->width == 1 && !a->is_whole) {
+        const double *v = a->numbers;
+        double found = v[0];
+        for (size_t i = 1; i < a->count; i++)
+            if (isnan(found) || (largest ? v[i] > found : v[i] < found)) {
+                found = v[i];
+                best = i;
+            }
+        return best;
+    }
     for (size_t i = column + a->width; i < a->count * a->width; i += a->width) {
         bool is_better = a->is_whole ? a->wholes[i] < a->wholes[best] : a->numbers[i] < a->numbers[best];
         if (largest)

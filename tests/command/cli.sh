@@ -109,6 +109,8 @@ script empty 'local x = 1'
 script syntax 'local = 3'
 script number 'return 5'
 script text 'print "hello" io.write "raw\n" return require("scene").scene'
+script busy_frame 'local S = require "scene" return require("glint").animation { scene = S.scene, frames = 2, width = 40, height = 24,
+  frame = function(_, n) local from = os.clock() while n == 2 and os.clock() < from + 0.05 do end end }'
 script table_error 'error { code = 3 }'
 script text_error 'error(setmetatable({}, { __tostring = function() return "my own words" end }))'
 script nil_error 'error()'
@@ -626,6 +628,8 @@ END
 # ---- Errors of scripts ----
 
 errors() {
+    exits 0 "a slow script" busy_frame.lua -o none
+    says "a line with the script's time" '^frame 2: script 0\.[0-9]+ s, render 0\.[0-9]+ s$'
     exits 2 "no such script" nothing.lua
     exits 2 "a folder" .
     exits 2 "syntax" syntax.lua

@@ -129,6 +129,12 @@ refused "memory" "not enough memory" -o a.png
 script 'local function grow() local t = "x" while true do t = t .. t end end' \
     'do return require "glint".animation { scene = require "glint".scene {}, frame = grow } end'
 refused "memory in a frame" "not enough memory" -o a.png
+script 'local t = {}; for i = 1, 1e9 do t[i] = require "glint".array(100000) end'
+refused "memory of arrays" "not enough memory" -o a.png
+script 'local a = require "glint".array(1 << 20); while true do a = require "glint".array { a, a, a }.x + a * 2; a = require "glint"._join({ a, a }, 1) end'
+refused "an array that doubles" "not enough memory" -o a.png
+script 'require "glint".array(1 << 59)'
+refused "an array larger than memory" "memory" -o a.png
 script 'local t = { ("x"):rep(6e7) }; t[2] = ("y"):rep(6e7)'
 refused "memory in two strings" "not enough memory" -o a.png
 if [ $slack_ms -eq 1000 ]; then # a sanitizer maps terabytes, so its builds have no memory limit

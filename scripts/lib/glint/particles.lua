@@ -191,8 +191,7 @@ local function stretch(self, axis, least, most)
 end
 
 -- Extends the range of all values. Ends that are NaN belong to missing values.
-local function widen(self, least, most, has_missing)
-  self.has_missing = self.has_missing or has_missing
+local function widen(self, least, most)
   if least == least then self.lowest, self.highest = math.min(self.lowest, least), math.max(self.highest, most) end
 end
 
@@ -218,7 +217,7 @@ local function put(self, frame, label, x, y, z, radius, value, code)
   self.places[self.pending] = is_colored and place_of_color(self, kind, code) or place_of(self, kind)
   if self.color_by then
     self.pending_values[self.pending] = value
-    widen(self, value, value, value ~= value)
+    widen(self, value, value)
   end
   self.count = self.count + 1
   self.counts[kind.name] = self.counts[kind.name] + 1
@@ -277,14 +276,20 @@ local function add_rows(self, n, arrays, last)
     of_kind[0] = nil
     radii = glint.array(of_kind):at(index)
   end
+  local least, most = radii:min(), radii:max()
   for axis, name in ipairs { "x", "y", "z" } do
-    stretch(self, axis, (arrays[name] - radii):min(), (arrays[name] + radii):max())
+    local at = arrays[name]
+    if least == most then
+      stretch(self, axis, at:min() - least, at:max() + least)
+    else
+      stretch(self, axis, (at - radii):min(), (at + radii):max())
+    end
   end
   self.data[#self.data + 1] = glint.array { arrays.x, arrays.y, arrays.z, radii }
   self.index[#self.index + 1] = index
   if values then
     self.values[#self.values + 1] = values
-    widen(self, values:min(), values:max(), values:bins(0, 1, 1):max() == 2)
+    widen(self, values:min(), values:max())
   end
   self.count = self.count + n
   local counts = index:counts()
@@ -335,8 +340,9 @@ local function color(self)
   end
   local fields = { name = "missing", diffuse = self.color_by.missing or map(0 / 0) }
   for field, value in pairs(self.options.material or {}) do fields[field] = value end
-  materials[STEPS + 1] = self.has_missing and glint.material(fields) or nil
-  return materials, glint._join(self.values, 1):bins(low, high, STEPS)
+  local index = glint._join(self.values, 1):bins(low, high, STEPS)
+  materials[STEPS + 1] = self.count > 0 and index:max() > STEPS and glint.material(fields) or nil
+  return materials, index
 end
 
 --- Returns the spheres as arrays: data (rows of x, y, z, radius), index (the material of each in the list materials),
