@@ -55,33 +55,12 @@ static int refuse(lua_State *L) { return refuse_option(L, "", luaL_checkstring(L
 
 // ---- The report's folder ----
 
-static bool make_folders(const char *folder)
-{
-    char path[GLINTL_PATH_SIZE];
-    snprintf(path, sizeof path, "%s", folder);
-    for (char *at = path + 1; *at; at++) {
-        if (*at != '/')
-            continue;
-        *at = '\0';
-        mkdir(path, 0777); // a failure shows in the check below
-        *at = '/';
-    }
-    const int why = mkdir(path, 0777) == 0 ? 0 : errno;
-    struct stat info;
-    if (stat(path, &info) == 0) {
-        errno = ENOTDIR;
-        return S_ISDIR(info.st_mode);
-    }
-    errno = why;
-    return false;
-}
-
 static bool check_folder(const char *folder, char message[GLINTL_MESSAGE_SIZE])
 {
     if (!*folder || strlen(folder) > GLINTL_PATH_SIZE - NAME_MAX_BYTES)
         return glintL_complain(message, "a folder to write to expected, got '%.200s'", folder);
     errno = 0;
-    if (make_folders(folder) && access(folder, W_OK | X_OK) == 0)
+    if (glintL_make_folders(folder) && access(folder, W_OK | X_OK) == 0)
         return true;
     const int why = errno;
     return glintL_complain(message, "a folder to write to expected, got '%.600s': %s", folder, strerror(why));

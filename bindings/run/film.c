@@ -1,12 +1,16 @@
 // Films of a run: the frames are stored in a folder next to the film, and joined when all of them exist.
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bindings/run/film.h"
+#include "bindings/run/system.h"
 
 // ---- Names ----
 
@@ -44,6 +48,7 @@ static glintL_film *add_film(glintL_run *run, const char *path, glintL_film_kind
     film->pattern = pattern_of(path);
     film->kind = kind;
     film->fps = fps;
+    film->lock = -1;
     if (!film->path || !film->pattern) {
         glintL_films_destroy(film);
         return NULL;
@@ -64,6 +69,28 @@ static void warn_no_ffmpeg(glintL_run *run, const glintL_film *film)
     if (film->kind != GLINTL_FILM_APNG && !glintL_has_ffmpeg())
         glintL_run_warn(run, "ffmpeg is not installed: the frames of %s are rendered and remain in %s.frames",
                         film->path, film->path);
+}
+
+static void name_folder(const glintL_film *film, char folder[GLINTL_PATH_SIZE])
+{
+    snprintf(folder, GLINTL_PATH_SIZE, "%s.frames", film->path);
+}
+
+// Makes and locks the folder of the frames. False: another run has locked it. Other failures show when a frame is
+// written.
+static bool lock_folder(glintL_film *film)
+{
+    char folder[GLINTL_PATH_SIZE];
+    struct stat info;
+    name_folder(film, folder);
+    do { // again if another run has just removed the folder
+        if (film->lock >= 0)
+            close(film->lock);
+        film->lock = glintL_make_folders(folder) ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+        if (film->lock >= 0 && flock(film->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+            return false;
+    } while (film->lock >= 0 && fstat(film->lock, &info) == 0 && info.st_nlink == 0);
+    return true;
 }
 
 bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *render, double fps,
@@ -96,11 +123,12 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
     if (film)
         return true;
     film = add_film(run, path, kind, fps);
-    if (film)
-        warn_no_ffmpeg(run, film);
-    else
-        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
-    return film != NULL;
+    if (!film)
+        return glintL_complain(message, "out of memory");
+    if (!lock_folder(film))
+        return refuse(message, path, "another run is making it now; wait for the end of that run, or choose another name");
+    warn_no_ffmpeg(run, film);
+    return true;
 }
 
 void glintL_film_take(const glintL_run *run, glintL_naming *naming)
@@ -146,6 +174,13 @@ void glintL_films_destroy(glintL_film *films)
         glintL_film *next = films->next;
         for (size_t i = 0; i < films->count; i++)
             free(films->files[i]);
+        if (films->lock >= 0) {
+            char folder[GLINTL_PATH_SIZE];
+            name_folder(films, folder);
+            if (films->count == 0)
+                rmdir(folder); // unless it has frames
+            close(films->lock);
+        }
         free(films->files);
         free(films->numbers);
         free(films->path);
@@ -277,7 +312,7 @@ static void remove_frames(const glintL_run *run, glintL_film *film)
         free(film->files[i]);
     }
     film->count = 0;
-    snprintf(folder, sizeof folder, "%s.frames", film->path);
+    name_folder(film, folder);
     if (rmdir(folder) != 0 && errno != ENOENT)
         glintL_run_note(run, "%s: not removed, because it contains other files", folder);
 }

@@ -16,6 +16,7 @@ typedef struct glintL_film {
     char **files; ///< owned, in order
     int64_t *numbers; ///< owned; numbers of the frames, if glintL_film_add adds them
     size_t count, capacity;
+    int lock; ///< the open folder PATH.frames, locked against other runs; -1: the file system has no locks
 } glintL_film;
 
 /// Opens the film at `path`, unless `path` is not a film. False: the message says what is wrong.

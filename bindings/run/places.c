@@ -2,6 +2,8 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 
 #include "bindings/run/run.h"
 
@@ -83,13 +85,41 @@ static bool replaces(glintL_run *run, const char *name, uint64_t picture, int64_
     return false;
 }
 
+// Returns whether another run has written another picture to the file since this run began.
+static bool is_of_other_run(const glintL_run *run, const glintL_file *file)
+{
+    struct stat info;
+    const struct timespec *since = &run->written_since;
+    if (glintL_name_is_special(file->path) || stat(file->path, &info) != 0 || !S_ISREG(info.st_mode))
+        return false;
+#ifdef __APPLE__
+    const struct timespec then = info.st_mtimespec;
+#else
+    const struct timespec then = info.st_mtim;
+#endif
+    const bool is_later = then.tv_sec != since->tv_sec ? then.tv_sec > since->tv_sec : then.tv_nsec > since->tv_nsec;
+    return is_later && !glint_file_has_key(file->path, file->key);
+}
+
+static void warn_of_other_run(glintL_run *run, const glintL_file *file, int64_t index)
+{
+    if (run->met_other_run || !is_of_other_run(run, file))
+        return;
+    run->met_other_run = true;
+    glintL_run_warn(run, "frame %" PRId64 ": output: '%.300s' was written by another run after this one began, and that picture is lost; "
+                    "give the runs different names", index, file->path);
+}
+
 bool glintL_places_add(glintL_run *run, const glintL_work *work)
 {
     bool warned = false;
     for (int i = 0; i < work->file_count && !run->exit_code; i++) {
         int64_t first = 0;
         const glintL_file *file = &work->files[i];
-        if (!replaces(run, file->path, hash_picture(file, work->index), work->index, &first) || warned)
+        const bool replaced = replaces(run, file->path, hash_picture(file, work->index), work->index, &first);
+        if (first == 0) // the first picture of this run in the file
+            warn_of_other_run(run, file, work->index);
+        if (!replaced || warned)
             continue;
         warn(run, work->files[i].path, first, work->index);
         warned = true;
@@ -111,4 +141,5 @@ void glintL_places_forget(glintL_run *run)
     free(run->written);
     run->written = NULL;
     run->written_count = run->written_capacity = 0;
+    clock_gettime(CLOCK_REALTIME, &run->written_since);
 }

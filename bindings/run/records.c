@@ -16,6 +16,7 @@ glintL_run *glintL_run_create(void)
     if (run) {
         run->request.repeat = 1;
         run->since_ms = glintL_now_ms();
+        glintL_places_forget(run);
     }
     return run;
 }

@@ -304,6 +304,8 @@ struct glintL_run {
     char *params_text; ///< owned; "name=value" lines
     glintL_written *written; ///< owned
     size_t written_count, written_capacity;
+    struct timespec written_since; ///< files with a later time are of this run or of one beside it
+    bool met_other_run; ///< a warning has named a file that another run writes
     struct glintL_film *films; ///< owned; made when all their frames exist
 
     int64_t count; ///< frames numbered so far

@@ -175,6 +175,26 @@ bool glintL_random(void *bytes, size_t size)
 #endif
 }
 
+bool glintL_make_folders(const char *folder)
+{
+    struct stat info;
+    char *path = strdup(folder);
+    if (!path)
+        return false;
+    for (char *at = path + 1; *path && *at; at++) {
+        if (*at != '/')
+            continue;
+        *at = '\0';
+        mkdir(path, 0777); // a failure shows in the check below
+        *at = '/';
+    }
+    const int why = mkdir(path, 0777) == 0 ? 0 : errno;
+    const bool exists = stat(path, &info) == 0;
+    free(path);
+    errno = exists ? ENOTDIR : why;
+    return exists && S_ISDIR(info.st_mode);
+}
+
 void glintL_keep_points(void)
 {
 #ifndef __NetBSD__

@@ -44,6 +44,9 @@ void glintL_cond_init(pthread_cond_t *cond);
 /// Fills unpredictable bytes. False: none are available.
 bool glintL_random(void *bytes, size_t size);
 
+/// Makes a folder and its parents. False: there is no such folder afterwards, and errno says why.
+bool glintL_make_folders(const char *folder);
+
 /// Keeps the decimal point in numbers of this thread, whatever locale is set later (except on NetBSD, where locales
 /// belong to processes).
 void glintL_keep_points(void);

@@ -396,6 +396,32 @@ check "the sheet" test -s p/sheet.png
 check "the page with the function's labels" grep -q '"2: x is 2"' plain.html
 absent "and no more" none.apng none.apng.frames plain.apng.frames
 
+# ---- Two runs at once ----
+
+# Each script runs the command a second time while it makes its own first frame.
+cat >twice.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { command = "", light = 0.5 }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = P.light }
+return glint.animation { scene = scene, frames = 2, width = 8, height = 6, frame = function(_, n)
+  if n == 1 and P.command ~= "" then os.execute(P.command) end
+end }
+LUA
+exits 0 "a film while another run makes it" twice.lua -o two.apng -q --set command="'$GLINT' twice.lua -o two.apng 2>second; echo \$? >code"
+check "the second run ends with 2" test "$(cat code)" -eq 2
+check "and says why" grep -q "output: 'two.apng' is a film: another run is making it now" second
+check "the first has all frames" test "$(chunks two.apng | grep -o fcTL | wc -l)" -eq 2
+absent "and no folder" two.apng.frames
+exits 0 "a film after the other" twice.lua -o two.apng -q
+exits 0 "a film elsewhere" twice.lua -o new/deep/two.apng -q --set command="'$GLINT' twice.lua -o two.apng -q 2>second; echo \$? >code"
+check "is no other film's" test "$(cat code)" -eq 0
+exits 0 "a job while another one writes its files" twice.lua -o 'same_%d.png' -q --set command="'$GLINT' twice.lua -o 'same_%d.png' -q --set light=0.25"
+says "a job while another one writes its files" "warning: frame 1: output: 'same_1.png' was written by another run after this one began, and that picture is lost"
+check "is said once" test "$(grep -c warning err)" -eq 1
+exits 0 "the same job" twice.lua -o 'equal_%d.png' -q --set command="'$GLINT' twice.lua -o 'equal_%d.png' -q"
+exits 0 "a later job" twice.lua -o 'same_%d.png' -q --set light=0.75
+check "nothing is said then" test ! -s err
+
 # ---- Transparent background ----
 
 exits 0 "frames with alpha" turn.lua --alpha --samples 4 -f 1-3 -o 'clear_%04d.png' --json
