@@ -8,7 +8,7 @@
 #include <xlocale.h> // locale_t is there
 #endif
 
-static locale_t points; // never freed; 0: out of memory, and numbers are those of the process's locale
+static locale_t points; // never freed; 0: out of memory, and numbers follow the locale of the process
 
 static void make_points(void) { points = newlocale(LC_ALL_MASK, "C", (locale_t)0); }
 

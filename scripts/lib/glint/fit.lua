@@ -139,8 +139,8 @@ local function by_name(names, v)
   return out
 end
 
--- Below this share of its squared slope, a number's effect on the picture is that of the other numbers: slopes have 24
--- bits.
+-- Below this share of its squared slope, other numbers together have the same effect on the picture as a number: slopes
+-- have 24 bits.
 local SAME <const> = 2.0 ^ -36
 
 local function submatrix(a, rows)
