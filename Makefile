@@ -74,7 +74,7 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
-# FreeType, Cairo, libjpeg and libsixel are each used by one file. Only that file gets their flags.
+# FreeType, Cairo, libjpeg, libsixel and libzstd are each used by one file. Only that file gets their flags.
 ifeq ($(call have,freetype2),yes)
   FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
   FONT_LIBS := $(shell pkg-config --libs freetype2)
@@ -93,6 +93,11 @@ endif
 ifeq ($(call have,libsixel),yes)
   SIXEL_CFLAGS := -DGLINT_HAVE_SIXEL $(shell pkg-config --cflags libsixel)
   SIXEL_LIBS := $(shell pkg-config --libs libsixel)
+endif
+# For data files compressed by zstd.
+ifeq ($(call have,libzstd),yes)
+  ZSTD_CFLAGS := -DGLINT_HAVE_ZSTD $(shell pkg-config --cflags libzstd)
+  ZSTD_LIBS := $(shell pkg-config --libs libzstd)
 endif
 # Only the C core of OpenEXR is used.
 ifeq ($(call have,'OpenEXR >= 3.1'),yes)
@@ -153,7 +158,7 @@ COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKA
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(MOVES) $(SAN_FLAGS) $(PTHREAD)
 LUA_CFLAGS := $(shell pkg-config --cflags $(LUA_PACKAGE) 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs $(LUA_PACKAGE) 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(CAIRO_LIBS) $(JPEG_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(CAIRO_LIBS) $(JPEG_LIBS) $(SIXEL_LIBS) $(ZSTD_LIBS) $(EXR_LIBS) -lm $(PTHREAD)
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED))
 
@@ -251,6 +256,7 @@ $(BUILD)/engine/file/pdf.o: OWN := $(CAIRO_CFLAGS)
 $(BUILD)/engine/file/jpeg.o: OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
+$(BUILD)/bindings/lua/unpack.o: OWN := $(ZSTD_CFLAGS)
 
 # Files embedded in the command, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
 CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/% bindings/cost/% bindings/run/%,$(wildcard bindings/*/*.lua))))
@@ -315,7 +321,7 @@ shared: $(BUILD)/$(SHARED) ## the shared library, build/libglint.so.VERSION
 # When flags or libraries change, everything is compiled again.
 # When only KERNELS or FLOAT changes, only the tables of kernels (select.c, table.c) are. When other effects are left
 # out, table.c is compiled and the libraries are made again.
-$(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS)
+$(BUILD)/flags: SAID = $(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(JPEG_CFLAGS) $(SIXEL_CFLAGS) $(ZSTD_CFLAGS)
 $(BUILD)/kernels: SAID = $(KERNELS) $(FLOAT)
 $(BUILD)/effects: SAID = $(LEFT_OUT)
 $(BUILD)/flags $(BUILD)/kernels $(BUILD)/effects: FORCE

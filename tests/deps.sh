@@ -25,6 +25,7 @@ libcairo2-dev   module:cairo-ft
 libjpeg-dev     module:libjpeg
 libsixel-dev    module:libsixel
 libseccomp-dev  module:libseccomp
+libzstd-dev     module:libzstd
 '
 test_required='
 libcmocka-dev   module:cmocka
@@ -166,7 +167,7 @@ for what in "$@"; do
         ;;
     build)
         require "$build_required"
-        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libcairo2 there is no .pdf, without libjpeg there are no JPEG textures, without libseccomp there is no --untrusted"
+        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libcairo2 there is no .pdf, without libjpeg there are no JPEG textures, without libseccomp there is no --untrusted, without libzstd .zst files are not read"
         ;;
     test)
         require "$test_required"

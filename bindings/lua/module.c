@@ -90,7 +90,7 @@ static int output(lua_State *L)
 __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
 {
     static void (*const parts[])(lua_State *) = {
-        glintL_open_vector,    glintL_open_array,    glintL_open_rows,      glintL_open_material, glintL_open_light,     glintL_open_camera,
+        glintL_open_vector,    glintL_open_array,    glintL_open_rows,      glintL_open_unpack,      glintL_open_material, glintL_open_light,     glintL_open_camera,
         glintL_open_transform, glintL_open_shape,    glintL_open_overlay, glintL_open_scene,     glintL_open_image,     glintL_open_picture,
         glintL_open_math,      glintL_open_variable,  glintL_open_params,   glintL_open_animation, glintL_open_patterns,
     };

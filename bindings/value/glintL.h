@@ -411,6 +411,8 @@ void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[2
 void glintL_open_picture(lua_State *L);
 /// rows.c: glint._row_reader, the reader of rows of text.
 void glintL_open_rows(lua_State *L);
+/// unpack.c: glint._unpack, the reader of compressed files.
+void glintL_open_unpack(lua_State *L);
 /// Writes the four bytes of a float32, little endian; returns the position after them.
 char *glintL_put_float(char *to, float value);
 

@@ -83,7 +83,7 @@ function tests.line_ends_and_marks()
   end
   raises("a.txt:3: x (a finite number) expected, got \"one\"", function() spell(xyz.frame(write("a.txt", "1\r\rC one 2 3\r"))) end)
   -- Tests line ends that cross the border of two blocks.
-  for size = 65520, 65540 do
+  for size = 262128, 262148 do
     local path = write("long.xyz", "2\r\n" .. ("x"):rep(size) .. "\r\nC 1 2 3\r\nO 4 5 6\r\n")
     is(spell(xyz.frame(path)), "C 1 2 3; O 4 5 6", "a long comment of " .. size)
     path = write("long.xyz", "2\r" .. ("x"):rep(size) .. "\rC 1 2 3\rO 4 5 6")
@@ -93,14 +93,44 @@ end
 
 function tests.formats_that_are_not_read()
   for _, case in ipairs { { "a.cif", "data_1ABC\n", "CIF" }, { "a.pdb", "data_1ABC\n_cell.length_a 10\n", "CIF" },
-    { "a.gro", "water\n", "a GROMACS structure" }, { "a.xyz", "\x1f\x8b\8\0", "compressed by gzip" },
-    { "a.xyz.gz", "\x1f\x8b\8\0", "compressed by gzip" }, { "a.mol2", "@<TRIPOS>", "Tripos MOL2" },
+    { "a.gro", "water\n", "a GROMACS structure" }, { "a.gro.gz", "water\n", "a GROMACS structure" }, { "a.mol2", "@<TRIPOS>", "Tripos MOL2" },
     { "b.xyz", "\xff\xfe1\0\n\0", "UTF-16, not UTF-8" }, { "a.glb", "glTF", "glTF" } } do
     raises(("%s/%s: is %s; glint reads .xyz .pdb"):format(folder, case[1], case[3]), function()
       spell((case[1]:find "pdb" and pdb or xyz).frame(write(case[1], case[2])))
     end)
   end
   raises("none.cif: No such file or directory", xyz.frame, folder .. "/none.cif")
+end
+
+-- Returns a frame of zstd with the text as one block that is not compressed.
+local function zstd(text)
+  return "\x28\xb5\x2f\xfd\xa0" .. ("<I4I3"):pack(#text, #text << 3 | 1) .. text
+end
+
+function tests.compressed()
+  local text = "2\nfirst\nC 1 2 3\nO 4 5 6\n2\nsecond\nC 7 8 9\nO 1 1 1\n"
+  local path = write("film.xyz", text)
+  assert(os.execute(("gzip -kf '%s'"):format(path)))
+  local files = { path .. ".gz" }
+  local ok, message = pcall(xyz.frame, write("film.xyz.zst", zstd(text)))
+  if ok then files[2] = folder .. "/film.xyz.zst" else
+    check(message:find("is compressed by zstd, which this build does not read", 1, true), "a build without zstd: %s", message)
+  end
+  for _, name in ipairs(files) do
+    local film = xyz.film(name)
+    is(spell(film:frame(2)), "C 7 8 9; O 1 1 1", name)
+    is(spell(film:frame(1)), "C 1 2 3; O 4 5 6", name .. ": back to the first frame")
+    check(film:length() == 2 and xyz.frame(name, 2):arrays().positions[2].x == 1, "%s: its length", name)
+    local file = assert(io.open(name, "rb"))
+    local whole = file:read "a"
+    file:close()
+    local cut = name:gsub("film", "cut")
+    write(cut:match "[^/]+$", whole:sub(1, -12))
+    raises(name:find "gz" and "gzip, and broken" or "zstd, and broken", function() for _ in xyz.frames(cut) do end end)
+  end
+  is(spell(points.frame(write("a.pts", "0 0 0 2\n"))), "point 0 0 0", "an intensity")
+  assert(os.execute(("gzip -kf '%s/a.pts'"):format(folder)))
+  is(spell(points.frame(folder .. "/a.pts.gz")), "point 0 0 0", "the ending before .gz counts")
 end
 
 function tests.alternate_locations()

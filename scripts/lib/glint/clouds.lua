@@ -1,7 +1,7 @@
 -- Point clouds with a header: .ply without faces (text or binary), .pcd (ascii, binary or binary_compressed).
 -- glint.points calls this. Columns have the names in the file; red, green and blue are the colour of a point. Points
 -- that are not finite, as in the gaps of a scan, are skipped.
-local frames = require "glint.frames"
+local frames, lines = require "glint.frames", require "glint.lines"
 
 local clouds = {}
 
@@ -75,7 +75,7 @@ end
 -- Returns such a function for binary data.
 local function binary_rows(source, layout)
   if source.path == "-" then error("standard input: a cloud of points as text expected, got a binary one", 0) end
-  local file = assert(io.open(source.path, "rb"))
+  local file = assert(lines.open_bytes(source.path))
   file:seek("set", (source:tell()) + (layout.skipped or 0))
   local format = layout.order .. table.concat(layout.codes)
   local size, done, block, at = format:packsize(), 0, "", 1
@@ -130,7 +130,7 @@ end
 local function packed_rows(source, layout)
   local function fail(what) error(("%s: %s"):format(source.path, what), 0) end
   if source.path == "-" then fail "a cloud of points as text expected, got a binary one" end
-  local file = assert(io.open(source.path, "rb"))
+  local file = assert(lines.open_bytes(source.path))
   file:seek("set", (source:tell()) + (layout.skipped or 0))
   local sizes = file:read(8) or ""
   local packed, size = (#sizes == 8 and sizes or ("\0"):rep(8)):match "^(....)(....)$"

@@ -20,11 +20,11 @@ local ENDINGS = {
   dcd = "a DCD trajectory", xtc = "a GROMACS trajectory", trr = "a GROMACS trajectory", nc = "NetCDF", cdf = "NetCDF",
   h5 = "HDF5", hdf5 = "HDF5", psf = "a CHARMM topology", las = "LAS", laz = "LAZ", e57 = "E57", ptx = "Leica PTX",
   obj = "a Wavefront mesh (glint.mesh)", stl = "an STL mesh (glint.mesh)", glb = "glTF", gltf = "glTF", off = "OFF",
-  ["3mf"] = "3MF", fbx = "FBX", gz = "compressed by gzip", bz2 = "compressed by bzip2", xz = "compressed by xz",
-  zip = "a zip archive", zst = "compressed by zstd", xlsx = "an Excel workbook",
+  ["3mf"] = "3MF", fbx = "FBX", bz2 = "compressed by bzip2", xz = "compressed by xz",
+  zip = "a zip archive", xlsx = "an Excel workbook",
 }
 local BEGINNINGS = {
-  { "\xff\xfe", "UTF-16, not UTF-8" }, { "\xfe\xff", "UTF-16, not UTF-8" }, { "\x1f\x8b", ENDINGS.gz },
+  { "\xff\xfe", "UTF-16, not UTF-8" }, { "\xfe\xff", "UTF-16, not UTF-8" }, { "\x1f\x8b", "compressed by gzip" },
   { "PK\3\4", ENDINGS.zip }, { "data_", ENDINGS.cif }, { "glTF", "glTF" }, { "\x89HDF", "HDF5" }, { "CDF\1", "NetCDF" },
 }
 local READS = ".xyz .pdb .nff .csv .tsv .txt .pts .pcd .ply and LAMMPS dumps"
@@ -44,21 +44,48 @@ local function check_kind(path)
   if kind then error(("%s: a file expected, got a %s"):format(path, kind), 0) end
 end
 
+-- Compressed files: their first bytes, and the method.
+local PACKED = { { "\x1f\x8b", "gzip" }, { "\x28\xb5\x2f\xfd", "zstd" } }
+
+--- Opens a file for reading, also one compressed by gzip or zstd; nil and a message if it cannot be opened.
+---@param path string
+function lines.open_bytes(path)
+  local file, message = io.open(path, "rb")
+  if not file then return nil, message end
+  local beginning = file:read(4) or ""
+  for _, packed in ipairs(PACKED) do
+    if beginning:find(packed[1], 1, true) == 1 then
+      file:close()
+      return glint._unpack(path, packed[2])
+    end
+  end
+  file:seek("set", 0)
+  return file
+end
+
 -- Opens a file; looks next to the script if it does not exist. Also returns the path.
 local function open_file(path)
-  local file, message = io.open(path, "rb")
+  local file, message = lines.open_bytes(path)
   local folder = type(arg) == "table" and type(arg[0]) == "string" and arg[0]:match "^.*/"
   if file or path:find "^/" or not folder then return file, file and path or message end
   check_kind(folder .. path)
-  local other = io.open(folder .. path, "rb")
+  local other = lines.open_bytes(folder .. path)
   return other, other and folder .. path or message
+end
+
+--- Returns the ending of a path in small letters, "" if it has none; of a.xyz.gz and a.xyz.zst it is "xyz".
+---@param path string
+---@return string
+function lines.ending(path)
+  path = path:lower()
+  return (path:match "^(.*)%.gz$" or path:match "^(.*)%.zst$" or path):match "%.(%w+)$" or ""
 end
 
 --- Opens a file, or standard input if the path is "-". Raises if it cannot be read, immediately for a device, a pipe or
 --- a folder.
 ---@param path string
 function lines.open(path)
-  local foreign = ENDINGS[(path:match "%.(%w+)$" or ""):lower()]
+  local foreign = ENDINGS[lines.ending(path)]
   check_kind(path)
   local file, found = io.stdin, path
   if path ~= "-" then file, found = open_file(path) end

@@ -131,7 +131,7 @@ end
 -- Returns the names for unnamed columns, and the value of full colour if they have one. Files .xyzn have normals, and
 -- .xyzrgb colours; in others the numbers decide.
 local function guess_columns(source, line, separator, count)
-  local ending = (source.path:match "%.(%w+)$" or ""):lower()
+  local ending = lines.ending(source.path)
   local names, rows, most = { "x", "y", "z" }, probe(source, line, separator), nil
   local function add(...) table.move({ ... }, 1, select("#", ...), #names + 1, names) end
   local function add_three(first)
