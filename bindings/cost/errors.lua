@@ -102,7 +102,7 @@ end
 local function estimate(study, case, image)
   local samples = case.choice.samples or study.samples
   if samples < 2 or #case.settings > (case.choice.samples and 1 or 0) then return end
-  local plan <close> = the.tools.plan(case.choice, "beauty", samples, the.tools.partner_seed(samples))
+  local plan <close> = the.tools.plan(case.choice, "beauty", 4 * samples, the.tools.partner_seed(samples))
   local partner <close> = the.tools.picture(plan)
   local stated = the.tools.estimate(image, partner)
   return stated > 0 and stated or nil

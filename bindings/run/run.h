@@ -462,6 +462,7 @@ typedef struct glintL_frame_planner {
 } glintL_frame_planner;
 
 bool glintL_run_refines(const glintL_run *run); ///< whether the run has --until or --seconds
+#define GLINTL_ESTIMATE_PIXELS 10 ///< with fewer pixels (glint_estimate_pixels), an estimate is not to be trusted
 /// Turns the options of a picture into those of its partner, which glint_estimate_error needs.
 void glintL_render_be_partner(glintL_render *render);
 /// Renders a frame with 2, 4, 8 ... samples until its error or the time is as requested. The caller owns the last

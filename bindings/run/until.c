@@ -1,14 +1,16 @@
 // --until and --seconds: renders a frame with 2, 4, 8 ... samples a pixel until its error is small enough, or the time
 // is over.
 //
-// Each picture is the picture of --samples n, bit for bit. A second picture with another seed, the partner, tells its
-// error (glint_estimate_error).
+// Each picture is the picture of --samples n, bit for bit. A second picture with another seed and more samples, the
+// partner, tells its error (glint_estimate_error).
 #include <inttypes.h>
 #include <math.h>
 
 #include "bindings/run/run.h"
 
 #define STUCK 0.9 // four times the samples reduce most errors to a half or less
+#define RISE 1.3 // estimates of ordinary pictures fall with each doubling of the samples, or rise by less
+#define PARTNER_SAMPLES 4 // relative to the picture's
 
 typedef struct ladder {
     glintL_run *run;
@@ -17,6 +19,7 @@ typedef struct ladder {
     double most; // samples, at most
     double start_ms, step_ms; // step_ms: time of the last picture and its partner
     double errors[3]; // of the last pictures, the newest first; 0: none
+    double pixels; // see glint_estimate_pixels
 } ladder;
 
 bool glintL_run_refines(const glintL_run *run) { return run->request.until > 0 || run->request.seconds > 0; }
@@ -24,6 +27,7 @@ bool glintL_run_refines(const glintL_run *run) { return run->request.until > 0 |
 void glintL_render_be_partner(glintL_render *render)
 {
     render->desc.seed = glint_partner_seed(&render->desc);
+    render->desc.samples = fmin(PARTNER_SAMPLES * render->desc.samples, GLINTL_SAMPLES_MAX);
     render->file_passes = 0;
     render->derivative_count = 0;
     render->desc.derivatives = NULL;
@@ -65,6 +69,7 @@ static glintL_work *step(ladder *l, double samples)
     glintL_work *partner = draw(l, &render);
     const bool good = partner && (glint_estimate_error(work->image, partner->image, &work->error, &error) == GLINT_OK ||
                                   fail_render(l, NULL, &error));
+    l->pixels = good ? glint_estimate_pixels(work->image, partner->image) : 0;
     glintL_work_destroy(partner);
     l->step_ms = glintL_now_ms() - start;
     if (!good) {
@@ -84,8 +89,33 @@ static bool has_time(const ladder *l, double factor)
     return limit == 0 || glintL_now_ms() - l->start_ms + factor * l->step_ms <= limit;
 }
 
+static bool has_risen(const ladder *l)
+{
+    return (l->errors[1] > 0 && l->errors[0] > RISE * l->errors[1]) ||
+           (l->errors[2] > 0 && l->errors[1] > RISE * l->errors[2]);
+}
+
+static bool is_doubtful(const ladder *l) { return l->pixels < GLINTL_ESTIMATE_PIXELS || has_risen(l); }
+
 // Returns whether more samples hardly reduce the error. With `adaptive`, pixels that keep one sample keep its noise.
-static bool is_stuck(const ladder *l) { return l->errors[2] > 0 && l->errors[0] > STUCK * l->errors[2]; }
+static bool is_stuck(const ladder *l)
+{
+    return l->errors[2] > 0 && l->errors[0] > STUCK * l->errors[2] && !is_doubtful(l);
+}
+
+static void warn_of_doubt(const ladder *l)
+{
+    char moved[80] = "", held[80] = "";
+    if (!is_doubtful(l))
+        return;
+    if (l->pixels < GLINTL_ESTIMATE_PIXELS)
+        snprintf(held, sizeof held, ": most of it is in %.0f pixel%s", fmax(l->pixels, 1), l->pixels < 1.5 ? "" : "s");
+    if (l->errors[1] > 0)
+        snprintf(moved, sizeof moved, "%s the last %s of the samples moved it from %.3g", *held ? ", and" : ":",
+                 l->errors[2] > 0 ? "two doublings" : "doubling", l->errors[2] > 0 ? l->errors[2] : l->errors[1]);
+    glintL_run_warn(l->run, "frame %" PRId64 ": the estimated error, %.3g, is not to be trusted%s%s; rare bright paths may be "
+                    "missing from it", l->index, l->errors[0], held, moved);
+}
 
 static void warn_of_rest(const ladder *l, const glintL_work *work)
 {
@@ -128,6 +158,7 @@ glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner,
     if (glintL_work_warn(run, work, &error))
         return fail_render(&l, work, &error);
     warn_of_rest(&l, work);
+    warn_of_doubt(&l);
     glintL_work_show(run, work);
     return work;
 }

@@ -46,6 +46,7 @@ typedef struct watcher {
     double ms;
     bool is_preview;
     double samples, own_samples, error; // the picture's samples per pixel, the script's, and the estimate; < 0: unknown
+    bool is_doubtful; // the estimate is not to be trusted
     double render_ms, full_ms; // time to render the last picture, and the last full picture; 0: unknown
     glint_image *image; // the picture now shown; owned
     watch_picture *picture; // the same, for the terminal; owned
@@ -71,7 +72,7 @@ static char *make_state(const watcher *w)
             w->frame, w->frames, w->pictures, w->width, w->height, w->is_preview ? "true" : "false", w->samples,
             w->own_samples, w->ms, w->params ? w->params : "[]");
     if (w->error >= 0)
-        fprintf(out, ",\"estimate\":%.3g", w->error);
+        fprintf(out, ",\"estimate\":%.3g,\"trusted\":%s", w->error, w->is_doubtful ? "false" : "true");
     if (*w->failure)
         glintL_json(out, ",\"error\":%s", w->failure);
     if (*w->warnings)
@@ -120,14 +121,14 @@ static void tell_error(watcher *w, const char *message)
 // Draws the picture with a line about it. On a terminal without graphics there are only lines, about full pictures.
 static void draw(watcher *w)
 {
-    char line[GLINTL_MESSAGE_SIZE + 512], of[32] = "", samples[64] = ""; // a loop counts its calls only while it runs
+    char line[GLINTL_MESSAGE_SIZE + 512], of[32] = "", samples[96] = ""; // a loop counts its calls only while it runs
     if (w->output->quiet || (w->is_preview && w->terminal.graphics == WATCH_TEXT))
         return;
     if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
         snprintf(of, sizeof of, " of %" PRId64, w->frames);
     if (w->own_samples > 1)
-        snprintf(samples, sizeof samples, w->error >= 0 ? ", %.0f of %.0f samples, estimated error %.2g" : ", %.0f of %.0f samples",
-                 w->samples, w->own_samples, w->error);
+        snprintf(samples, sizeof samples, w->error >= 0 ? ", %.0f of %.0f samples, estimated error %.2g%s" : ", %.0f of %.0f samples",
+                 w->samples, w->own_samples, w->error, w->is_doubtful ? " (not to be trusted)" : "");
     snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s%s, %.0f ms after the %s%s%s", w->run->script,
              w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", samples, w->ms,
              w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
@@ -142,10 +143,11 @@ static void show_error(watcher *w, const glint_image *partner)
         glintL_run_fail(w->run, GLINTL_EXIT_FAILED, w->frame, "%s", error.message);
         return;
     }
+    w->is_doubtful = glint_estimate_pixels(w->image, partner) < GLINTL_ESTIMATE_PIXELS;
     publish(w, NULL);
     if (w->output->json) {
-        fprintf(w->output->data, "{\"event\":\"estimate\",\"index\":%" PRId64 ",\"samples\":%.0f,\"error\":%.6g}", w->frame,
-                w->samples, w->error);
+        fprintf(w->output->data, "{\"event\":\"estimate\",\"index\":%" PRId64 ",\"samples\":%.0f,\"error\":%.6g,\"trusted\":%s}",
+                w->frame, w->samples, w->error, w->is_doubtful ? "false" : "true");
         cli_end_line(w->output);
     }
     draw(w);

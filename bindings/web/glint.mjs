@@ -183,7 +183,8 @@ class Job {
 
   /**
    * Renders a frame in steps: yields pictures with 1, 2, 4 ... samples, and the picture of render() as the last. Yields a
-   * picture again when `image.error`, the estimated error of its beauty pass, is known. Frames of one sample, pictures
+   * picture again when `image.error`, the estimated error of its beauty pass, is known; `image.trusted` is false if the
+   * estimate is not to be trusted, because few pixels hold most of the error. Frames of one sample, pictures
    * that take less than a tenth of a second, and calls of scene:render have no steps before the last.
    */
   async *steps(options) {
@@ -191,8 +192,8 @@ class Job {
     do {
       image = new Image(await this.#ask("render", options, { after: image?.samples ?? 0 }))
       yield image
-      const error = image.samples > 1 ? await this.#ask("estimate", options) : undefined
-      if (error !== undefined) yield Object.assign(image, { error })
+      const estimate = image.samples > 1 ? await this.#ask("estimate", options) : undefined
+      if (estimate !== undefined) yield Object.assign(image, estimate)
     } while (image.samples < image.ownSamples)
   }
 

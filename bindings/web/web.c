@@ -35,6 +35,7 @@ typedef struct web_job {
     glintL_render render;
     double sample_ms; // time that a sample of the last picture took; 0: unknown
     double error; // estimate for the last picture; < 0: unknown
+    bool is_doubtful; // the estimate is not to be trusted
     uint8_t *bytes; // result of the last request; owned
     char warnings[WARNINGS_SIZE]; // warnings of the last call, one per line
 } web_job;
@@ -156,6 +157,7 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     if (run->renders_partner) {
         if (glint_estimate_error(job.image, work->image, &job.error, &error))
             glintL_run_fail(job.run, GLINTL_EXIT_FAILED, work->index, "%s", error.message);
+        job.is_doubtful = glint_estimate_pixels(job.image, work->image) < GLINTL_ESTIMATE_PIXELS;
         return;
     }
     glint_image_release(job.image);
@@ -428,6 +430,9 @@ EMSCRIPTEN_KEEPALIVE double web_estimate(double frame)
     glintL_run_limit(job.run, 0, false);
     return glintL_run_collect(job.run, true) && good ? job.error : -1;
 }
+
+/// Returns whether the last estimate is to be trusted.
+EMSCRIPTEN_KEEPALIVE bool web_is_trusted(void) { return !job.is_doubtful; }
 
 EMSCRIPTEN_KEEPALIVE double web_samples(void) { return job.render.desc.samples; }
 EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }

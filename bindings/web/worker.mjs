@@ -136,7 +136,7 @@ function estimate(message) {
   choose(message.options)
   const error = call("web_estimate", message.frame)
   check(error >= 0)
-  return error
+  return { error, trusted: Boolean(call("web_is_trusted")) }
 }
 
 function explain({ set, frame, options }) {

@@ -271,7 +271,7 @@ for _, row in ipairs(rows) do
       row.value, work)))
     local stated = tonumber(read("out"):match '"error":([%d.e-]+)')
     check(near(row.estimate, stated), "%d samples: estimate %g, --until says %g", row.value, row.estimate, stated)
-    check(row.estimate < 1.3 * row.rmse and row.rmse < 1.3 * row.estimate, "%d samples: RMSE %g, estimate %g", row.value,
+    check(row.estimate < 1.4 * row.rmse and row.rmse < 1.25 * row.estimate, "%d samples: RMSE %g, estimate %g", row.value,
       row.rmse, row.estimate)
   else
     check(row.estimate == null or row.default or row.rmse == own.rmse, "%s %s: no estimate", row.knob, row.value)

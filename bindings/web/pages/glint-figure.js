@@ -59,8 +59,9 @@ export function written(value) {
 }
 
 // Returns the picture's samples and error as text; "" for a scene of one sample.
-export function quality({ samples, ownSamples, error }) {
-  return ownSamples > 1 ? `${samples} of ${ownSamples} samples${error === undefined ? "" : `, estimated error ${written(error)}`}` : ""
+export function quality({ samples, ownSamples, error, trusted }) {
+  const estimate = error === undefined ? "" : `, estimated error ${written(error)}${trusted ? "" : " (not to be trusted)"}`
+  return ownSamples > 1 ? `${samples} of ${ownSamples} samples${estimate}` : ""
 }
 
 // Makes the control of one parameter: a labelled slider, list, box or field. It calls `changed(value, moving)` for each
