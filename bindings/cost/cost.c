@@ -4,7 +4,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bindings/cost/cost.h"
@@ -269,7 +268,8 @@ static void close_study(cost_study *study)
             if (study->renderers[keeps][counts] != study->run->renderer)
                 glint_renderer_destroy(study->renderers[keeps][counts]);
     cost_moments_close(study->moments);
-    glint_reference_destroy(study->reference);
+    glint_reference_destroy(study->references[0]);
+    glint_reference_destroy(study->references[1]);
     cost_scene_close(&study->scene);
 }
 

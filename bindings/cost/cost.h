@@ -9,13 +9,15 @@
 ///   shapes.c     the same for meshes: shading, and spheres with other numbers of segments
 ///   moments.c    the same at the times of an open shutter
 ///   measure.c    one setting in the engine: its plan, its picture and its time
-///   errors.c     a picture against the reference; decisions pixel by pixel
+///   errors.c     a picture against the reference
 ///
 ///   study.lua    the phases of a study; its cases and rows
 ///   knobs.lua    the table of knobs: a setting that trades accuracy for time is a row of it
-///   errors.lua   the reference, and the measurement of a case
+///   errors.lua   the reference, and the pictures of a case with several seeds
+///   verdict.lua  what the spread of the errors allows to say: confidence, verdicts, effects that are lost
 ///   timing.lua   runs in random order, quartiles, the time left
-///   front.lua    the Pareto front, combinations worth measuring, the advice
+///   front.lua    the Pareto front
+///   advice.lua   the sentence of advice, or what is not decided
 ///   lines.lua    the table for people, and lines for programs
 ///   page.lua, page.html, plot.lua, plot.css   the page and the plot
 #ifndef GLINT_COST_H
@@ -60,10 +62,6 @@ bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene);
 void cost_scene_close(cost_scene *scene);
 /// Restores all objects. It fails only for want of memory.
 glint_status cost_scene_restore(cost_scene *scene, glint_error *error);
-/// Makes every surface matt white without indirect light, so that exactly the points that light number `light` reaches
-/// are lit. The light has strength 1 and the others 0; if `light` is not the number of a light, all have strength 1.
-/// Shadow settings stay.
-glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error);
 
 // ---- shapes.c ----
 
@@ -107,7 +105,7 @@ typedef struct cost_study {
     cost_moments *moments; ///< owned
     const glintL_render *own; ///< the script's own options
     glint_renderer *renderers[2][2]; ///< [reuses][counts work]; owned, except the run's own renderer
-    glint_reference *reference; ///< owned; NULL: none
+    glint_reference *references[2]; ///< the truth, and the script's own setting; owned; NULL: none
 } cost_study;
 
 cost_study *cost_study_of(lua_State *L); ///< the study of the running function
@@ -130,8 +128,6 @@ typedef struct cost_setting {
     bool reuses; ///< rendered after the neighbouring frame, using that frame's cached results
     int shadows, model, shading; ///< indices of words; -1: as in the script
     double light_samples, segments, numbers[COST_SCENE_NUMBERS]; ///< -1: as in the script; segments 0: exact
-    bool is_painted; ///< matt white, lit by light number `light`
-    size_t light;
 } cost_setting;
 
 extern const char *const cost_shading_words[]; ///< by glint_shading; ends with NULL

@@ -1,83 +1,35 @@
-// A picture against the reference, and decisions pixel by pixel: functions for the modules.
+// A picture against the reference: functions for the modules.
 #include <stdlib.h>
-#include <string.h>
 
 #include "bindings/cost/cost.h"
 
-#define LIT 0x1p-10 // less than a quarter of an 8-bit step: a surface lit at grazing angles counts as dark
+#define REFERENCE_PARTS 4
 
-// ---- Decisions ----
-
-// decisions(image, objects): returns whether each pixel is lit and, if asked for, the number of its object, 0 for the
-// background, as two arrays.
-static int decisions(lua_State *L)
-{
-    const glint_image *image = cost_image_at(L, 1);
-    const int width = glint_image_width(image), height = glint_image_height(image);
-    const size_t pixels = (size_t)width * (size_t)height;
-    uint8_t *lit = lua_newuserdatauv(L, pixels, 0);
-    float *objects = lua_toboolean(L, 2) ? lua_newuserdatauv(L, pixels * sizeof *objects, 0) : NULL;
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            float v[3] = { 0 };
-            glint_image_pixel(image, GLINT_PASS_OBJECT_ID, x, y, v, NULL);
-            if (objects)
-                *objects++ = v[0];
-            glint_image_pixel(image, GLINT_PASS_DIFFUSE, x, y, v, NULL);
-            *lit++ = v[0] > LIT || v[1] > LIT || v[2] > LIT;
-        }
-    return objects ? 2 : 1;
-}
-
-// differ(a, b): counts the pixels with different objects and, among the rest, those that different lights reach. Each
-// list has the array of objects, then an array for each light.
-static int differ(lua_State *L)
-{
-    const lua_Integer planes = luaL_len(L, 1);
-    lua_Integer wrong_objects = 0, wrong_shadows = 0;
-    lua_rawgeti(L, 1, 1);
-    lua_rawgeti(L, 2, 1);
-    const float *mine = lua_touserdata(L, 3), *truth = lua_touserdata(L, 4);
-    const size_t pixels = lua_rawlen(L, 3) / sizeof *mine;
-    uint8_t *shadows = lua_newuserdatauv(L, pixels + 1, 0);
-    memset(shadows, 0, pixels + 1);
-    for (lua_Integer plane = 2; plane <= planes; plane++) {
-        lua_rawgeti(L, 1, plane);
-        lua_rawgeti(L, 2, plane);
-        const uint8_t *a = lua_touserdata(L, -2), *b = lua_touserdata(L, -1);
-        for (size_t i = 0; i < pixels; i++)
-            shadows[i] |= a[i] != b[i];
-        lua_pop(L, 2);
-    }
-    for (size_t i = 0; i < pixels; i++) {
-        wrong_objects += mine[i] != truth[i];
-        wrong_shadows += mine[i] == truth[i] && shadows[i];
-    }
-    lua_pushinteger(L, wrong_objects);
-    lua_pushinteger(L, wrong_shadows);
-    return 2;
-}
-
-// ---- The reference ----
-
-// reference(a, b, c, d): sets the reference to the mean of the pictures.
+// reference(slot, image, ...): sets reference 0, the truth, or 1, the script's own setting, to the mean of the pictures.
 static int set_reference(lua_State *L)
 {
-    const glint_image *parts[] = { cost_image_at(L, 1), cost_image_at(L, 2), cost_image_at(L, 3), cost_image_at(L, 4) };
+    const glint_image *parts[REFERENCE_PARTS];
     cost_study *study = cost_study_of(L);
+    glint_reference **out = &study->references[lua_toboolean(L, 1)];
+    size_t count = 0;
     glint_error error;
-    if (glint_reference_create(parts, 4, &study->own->desc.tone, &study->reference, &error))
-        return cost_fail(L, &error);
-    return 0;
+    while (count < REFERENCE_PARTS && count + 1 < (size_t)lua_gettop(L)) {
+        parts[count] = cost_image_at(L, (int)count + 2);
+        count++;
+    }
+    glint_reference_destroy(*out);
+    *out = NULL;
+    return glint_reference_create(parts, count, &study->own->desc.tone, out, &error) ? cost_fail(L, &error) : 0;
 }
 
-// errors(image, bits): returns the errors of the picture, or of its values in a file with so many bits; 0: no file.
+// errors(image, bits, slot): returns the errors of the picture against a reference, or of its values in a file with so
+// many bits; 0: no file.
 static int errors(lua_State *L)
 {
     glint_picture_error found;
     glint_error error;
-    if (glint_reference_measure(cost_study_of(L)->reference, cost_image_at(L, 1), (int)luaL_checkinteger(L, 2), &found,
-                                &error))
+    if (glint_reference_measure(cost_study_of(L)->references[lua_toboolean(L, 3)], cost_image_at(L, 1),
+                                (int)luaL_checkinteger(L, 2), &found, &error))
         return cost_fail(L, &error);
     lua_newtable(L);
     glintL_set_number(L, "rmse", found.rmse);
@@ -89,13 +41,27 @@ static int errors(lua_State *L)
     return 1;
 }
 
+// distance(a, b): returns the mean squared difference of two pictures; b nil: of a picture and the reference.
+static int distance(lua_State *L)
+{
+    const bool is_alone = lua_isnoneornil(L, 2);
+    double rmse;
+    glint_error error;
+    if (glint_estimate_error(cost_image_at(L, 1),
+                             is_alone ? glint_reference_image(cost_study_of(L)->references[0]) : cost_image_at(L, 2),
+                             &rmse, &error))
+        return cost_fail(L, &error);
+    lua_pushnumber(L, rmse * rmse);
+    return 1;
+}
+
 // difference(image): returns 16 times the picture's difference from the reference.
 static int difference(lua_State *L)
 {
     const glint_image *image = cost_image_at(L, 1);
     glint_image **out = cost_push_image(L);
     glint_error error;
-    return glint_reference_difference(cost_study_of(L)->reference, image, 16, out, &error) ? cost_fail(L, &error) : 1;
+    return glint_reference_difference(cost_study_of(L)->references[0], image, 16, out, &error) ? cost_fail(L, &error) : 1;
 }
 
 static int drop_bytes(lua_State *L)
@@ -125,36 +91,11 @@ static int png(lua_State *L)
     return 1;
 }
 
-// ---- The estimate of --until ----
-
-// partner_seed(samples): returns the seed of the partner of the frame with so many samples.
-static int partner_seed(lua_State *L)
-{
-    glint_render_desc desc = cost_study_of(L)->own->desc;
-    desc.samples = luaL_checknumber(L, 1);
-    lua_pushnumber(L, glint_partner_seed(&desc));
-    return 1;
-}
-
-// estimate(image, partner): returns the error of a picture as --until estimates it.
-static int estimate(lua_State *L)
-{
-    double rmse;
-    glint_error error;
-    if (glint_estimate_error(cost_image_at(L, 1), cost_image_at(L, 2), &rmse, &error))
-        return cost_fail(L, &error);
-    lua_pushnumber(L, rmse);
-    return 1;
-}
-
 const luaL_Reg cost_error_functions[] = {
-    { "decisions", decisions },
-    { "differ", differ },
     { "reference", set_reference },
     { "errors", errors },
     { "png", png },
     { "difference", difference },
-    { "estimate", estimate },
-    { "partner_seed", partner_seed },
+    { "distance", distance },
     { NULL, NULL },
 };

@@ -1,25 +1,18 @@
--- Measures the distance of a setting from the truth: the reference and its own error, decisions pixel by pixel.
+-- Measures the distance of a setting from the truth: the reference and its own error, and pictures with
+-- several seeds.
 local the = ...
 
 local PARTS <const> = 4 -- the reference is the mean of this many pictures with different seeds
 local TIMES <const> = 32 -- samples of each part, relative to the script's
 local LEAST_TIMES <const> = 2 -- minimum of TIMES if a budget forces fewer; with fewer the errors mean nothing
-local LIGHTS_MAX <const> = 8 -- number of lights checked one by one
 local BATCH_MAX <const> = 1000 -- frames in a run
-
--- Returns the visible object and the lights that reach it, at the sample in the middle of each pixel.
-local function decide(study, choice, is_exact)
-  local planes, count = {}, #study.lights
-  for light = 1, count <= LIGHTS_MAX and math.max(count, 1) or 1 do
-    local plan <close> = the.tools.plan(choice, "decisions", 1, nil, is_exact, count <= LIGHTS_MAX and light or nil)
-    local image <close> = the.tools.picture(plan)
-    local lit, objects = the.tools.decisions(image, light == 1)
-    planes[1], planes[light + 1] = planes[1] or objects, lit
-  end
-  return planes
-end
+the.PICTURES = 3 -- pictures of each setting, with different seeds; as many more at a time, up to
+the.PICTURES_MAX = 300
 
 -- ---- The reference ----
+
+-- Returns the time of a full reference.
+function the.reference_ms(study) return PARTS * TIMES * study.own.render_ms end
 
 -- Returns the samples of each part: 32 times the script's, or more, up to 32 times the most in any row if the allowance
 -- permits. A budget may force fewer; nil: no reference.
@@ -47,33 +40,27 @@ local function choose_truth(study)
   return choice, name
 end
 
--- Chooses independent seeds. Neighbouring seeds share a sequence, so their errors might cancel. Seeds are below 2^20,
--- so that a seed's shift keeps all of its digits.
+-- Chooses the seeds of the reference, and those of the pictures of each setting. Seeds are below 2^20, so that a
+-- seed's shift keeps all of its digits. None is the script's: seed 0 suits powers of two better than other seeds do.
 local function choose_seeds(study)
   local generator, seeds, taken = { state = study.seed }, {}, { [study.seed] = true }
-  while #seeds < PARTS do
+  while #seeds < PARTS + the.PICTURES_MAX do
     local seed = 1 + (the.next_random(generator) & 0xfffff)
     if not taken[seed] then seeds[#seeds + 1], taken[seed] = seed, true end
   end
-  return seeds
+  study.seeds = table.move(seeds, PARTS + 1, #seeds, 1, {})
+  return table.move(seeds, 1, PARTS, 1, {})
 end
 
--- Estimates the error of the mean from the differences between n independent parts and their mean: the sum of their
--- squares over n (n - 1) is the variance of the mean.
+-- Returns the error of the mean of independent parts: the sum of their squared distances from it over n (n - 1) is the
+-- variance of the mean.
 local function measure_parts(parts)
-  local n, sum = PARTS, { rmse = 0.0, relmse = 0.0, max_code = 0.0, over1 = 0.0, over8 = 0.0, flip = 0.0 }
-  for _, part in ipairs(parts) do
-    local error = the.tools.errors(part, 0)
-    sum.rmse = sum.rmse + error.rmse * error.rmse / (n * (n - 1))
-    sum.relmse = sum.relmse + error.relmse / (n * (n - 1))
-    sum.max_code = math.max(sum.max_code, error.max_code)
-    sum.flip = sum.flip + error.flip / n
-  end
-  sum.rmse = math.sqrt(sum.rmse)
-  return sum
+  local n, sum = PARTS, 0
+  for _, part in ipairs(parts) do sum = sum + the.tools.distance(part) end
+  return { square = sum / (n * (n - 1)), rmse = math.sqrt(sum / (n * (n - 1))) }
 end
 
--- Makes the reference, its own error and the true decisions. `allowance_ms` is the time for all parts.
+-- Makes the reference and finds its own error. `allowance_ms` is the time for all parts.
 function the.make_reference(study, allowance_ms)
   local choice
   local samples, own = choose_samples(study, allowance_ms), study.samples
@@ -89,51 +76,68 @@ function the.make_reference(study, allowance_ms)
     local plan <close> = the.tools.plan(choice, "beauty", samples, seed, true)
     parts[i] = the.tools.picture(plan)
   end
-  the.tools.reference(table.unpack(parts))
+  the.tools.reference(false, table.unpack(parts))
   local reference = measure_parts(parts)
   for _, part in ipairs(parts) do the.tools.close(part) end
-  reference.samples, reference.seeds, study.decisions = samples, seeds, decide(study, choice, true)
+  reference.samples, reference.seeds = samples, seeds
   study.reference = reference
 end
 
 -- ---- A case ----
 
--- Estimates the error of a picture without the reference, as --until does, for cases that differ in their samples.
-local function estimate(study, case, image)
-  local samples = case.choice.samples or study.samples
-  if samples < 2 or #case.settings > (case.choice.samples and 1 or 0) then return end
-  local plan <close> = the.tools.plan(case.choice, "beauty", 4 * samples, the.tools.partner_seed(samples))
-  local partner <close> = the.tools.picture(plan)
-  local stated = the.tools.estimate(image, partner)
-  return stated > 0 and stated or nil
+-- Renders the case with the next seeds and adds the pictures' errors. `image`: the first of them, if it is rendered.
+--
+-- Two pictures have the errors b + x and b + y, where b is the bias and x and y are independent noise. The product of
+-- the errors has the mean b^2; their squares and the square of x - y, the pictures' distance, tell it.
+function the.replicate(study, case, image)
+  local images, squares, before = { image }, case.squares, #case.squares
+  for i = #images + 1, the.PICTURES do
+    local plan <close> = the.tools.plan(case.choice, "beauty", nil, study.seeds[before + i])
+    images[i] = the.tools.picture(plan)
+  end
+  for i, picture in ipairs(images) do
+    squares[before + i] = the.tools.distance(picture)
+    for k = 1, i - 1 do
+      local apart = the.tools.distance(picture, images[k])
+      case.products[#case.products + 1] = (squares[before + i] + squares[before + k] - apart) / 2
+        - study.reference.square
+    end
+  end
+  for i = image and 2 or 1, #images do the.tools.close(images[i]) end
+  the.split_error(study, case)
 end
 
 local function find_errors(study, case, image)
-  local film = the.tools.errors(image, 0)
-  local file = case.needs_file and the.tools.errors(image, case.choice.bits or study.bits) or nil
-  case.estimate = estimate(study, case, image)
-  case.wrong_object, case.wrong_shadow = the.tools.differ(decide(study, case.choice), study.decisions)
+  case.film = the.tools.errors(image, 0)
+  case.file = case.needs_file and the.tools.errors(image, case.choice.bits or study.bits) or nil
+  if case == study.own then the.tools.reference(true, image) end
+  case.changed = case.may_lose and the.tools.errors(image, 0, true).over1 or nil
   if study.report then
     local difference <close> = the.tools.difference(image)
     case.picture, case.difference = the.tools.png(image), the.tools.png(difference)
   end
-  case.film, case.file = film, file
+  the.replicate(study, case, image)
 end
 
--- Runs a case once; measures its work, errors and decisions; makes the pictures for the report.
+-- Runs a case once; measures its work and errors; makes the pictures for the report.
 function the.measure(study, case)
   case.is_first_alone, case.runs, case.batch = false, 0, 1
   the.run(case)
   case.is_first_alone = true
-  local cpu = the.tools.cpu()
-  local plan <close> = the.tools.plan(case.choice, "both")
+  local own, is_repeat = study.own, case.choice.reuse -- a frame after its neighbour, which has the script's seed
+  local seed = study.reference and not is_repeat and study.seeds[1] or nil
+  local plan <close> = the.tools.plan(case.choice, "both", nil, seed)
   local image <close>, stats = the.tools.picture(plan, true)
-  case.guess_cpu_ms = math.min(case.ms.cpu[1], the.tools.cpu() - cpu)
   case.guess_ms = math.min(case.ms.wall[1], stats.render_ms + stats.tone_ms + case.ms.encode[1])
   case.work = stats.work
   -- The untimed costs of the frames may make a run longer, but at most 3 run_ms.
   local frames = math.min(study.run_ms / math.max(case.guess_ms, 1e-3), 3 * study.run_ms / case.estimate_ms)
+  case.frame_ms = case.estimate_ms
   case.batch = math.ceil(math.min(math.max(frames, 1), BATCH_MAX))
   case.estimate_ms = case.estimate_ms * case.batch
-  if study.reference then find_errors(study, case, image) end
+  if is_repeat and own.film then -- the picture is the same, bit for bit
+    case.film, case.squares, case.products = own.film, own.squares, own.products
+  elseif study.reference then
+    find_errors(study, case, image)
+  end
 end

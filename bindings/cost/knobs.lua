@@ -98,13 +98,25 @@ local function list_reuse(study)
   return values
 end
 
+-- ---- Effects that a value takes away ----
+
+local function lose(low, other) return function(_, value) return (value == 0 or value == "off") and low or other end end
+
+local function lose_depth(study, value)
+  local rays = study.own.rays
+  local name = rays.mirror > 0 and (rays.refraction > 0 and "reflections and refraction" or "reflections")
+    or "refraction"
+  return value == 0 and "without " .. name or "with fewer " .. name
+end
+
 local SURFACES <const>, PNG <const> = "a visible surface", "an output in .png"
 local has_indirect = function(study) return study.stages.indirect and study.has_indirect end
 
 -- In the order of the output. needs: what a scene needs to respond. list: returns the values, if the scene responds:
 -- `own` is the index of the script's value, `base` of the value in the other knobs' rows (normally `own`), `truth` of
--- the value of the reference. is_alone: the knob is not combined with others. is_of_file: its error arises in the
--- file's pixel values, not in the linear light. is_other_time: its times are not times of a whole frame.
+-- the value of the reference. is_of_file: its error arises in the file's pixel values, not in the linear light.
+-- is_other_time: its times are not times of a whole frame. loses: names the effect that a value takes away, if the
+-- picture shows that; nil: the knob changes the noise only.
 the.knobs = {
   { name = "samples", needs = SURFACES,
     list = function(study) return study.stages.cast and numbers(study.samples, 1, 4, 16, 64) end },
@@ -113,21 +125,24 @@ the.knobs = {
       return study.stages.cast and study.samples > 1 and numbers(study.adaptive, 0, 0.01, 0.03, 0.1, 0.3)
     end },
   { name = "shutter_times", needs = "an animation whose camera has an open shutter",
+    loses = function(_, value) return value == 1 and "without motion blur" or "with coarser motion blur" end,
     list = function(study) return study.moments[1] and numbers_to_truth(table.unpack(study.moments)) end },
-  { name = "shadows", needs = "a light that casts shadows", list = list_shadows },
+  { name = "shadows", needs = "a light that casts shadows", list = list_shadows,
+    loses = lose("without shadows", "without sampled shadows") },
   { name = "light_samples", needs = "a light with a surface and soft shadows", list = list_light_samples },
-  { name = "precision", needs = SURFACES,
+  { name = "precision", needs = SURFACES, loses = lose(nil, "decided in float"),
     list = function(study) return study.stages.cast and words(study.precision, "double", "float") end },
-  { name = "model", needs = "a highlight", list = list_model },
-  { name = "segments", needs = "a sphere_mesh", list = list_segments },
-  { name = "shading", needs = "a mesh and a light",
+  { name = "model", needs = "a highlight", list = list_model, loses = lose(nil, "with other highlights") },
+  { name = "segments", needs = "a sphere_mesh", list = list_segments, loses = lose(nil, "with coarser spheres") },
+  { name = "shading", needs = "a mesh and a light", loses = lose(nil, "with another shading"),
     list = function(study)
       return study.shading and study.stages.light and words(study.shading, "flat", "gouraud", "phong")
     end },
-  { name = "max_depth", needs = "a mirror or glass", list = list_max_depth },
+  { name = "max_depth", needs = "a mirror or glass", list = list_max_depth, loses = lose_depth },
   { name = "indirect_samples", needs = "indirect light",
     list = function(study) return has_indirect(study) and numbers(study.indirect_samples, 1, 4, 16, 64, 256) end },
   { name = "indirect_bounces", needs = "indirect light", -- 0 replaces indirect light by the ambient light
+    loses = lose("without indirect light", "with fewer bounces"),
     list = function(study) return has_indirect(study) and numbers_to_truth(study.indirect_bounces, 0, 1, 2, 4, 8) end },
   { name = "ambient_occlusion_samples", needs = "ambient occlusion",
     list = function(study)
@@ -136,11 +151,11 @@ the.knobs = {
     end },
   { name = "reflection_samples", needs = "a rough surface that reflects",
     list = function(study) return study.stages.rough and numbers(study.reflection_samples, 1, 4, 16, 64, 256) end },
-  { name = "bits", needs = PNG, is_alone = true, is_of_file = true,
+  { name = "bits", needs = PNG, is_of_file = true,
     list = function(study) return not study.is_pfm and numbers(study.bits, 8, 16) end },
   { name = "encode", needs = PNG, is_alone = true,
     list = function(study) return not study.is_pfm and words(study.encode, "fast", "small") end },
-  { name = "reuse", is_alone = true, is_other_time = true, list = list_reuse,
+  { name = "reuse", is_other_time = true, list = list_reuse,
     needs = "a second frame (in a loop of scene:render, choose a later frame than the first with --frame)" },
 }
 

@@ -100,12 +100,10 @@ static glint_status plan_setting(cost_study *study, const cost_setting *setting,
 {
     cost_scene *scene = &study->scene;
     glint_plan **times = NULL;
-    const int count = setting->is_painted ? 0 : setting->shutter_times; // decisions are of the frame's own instant
+    const int count = setting->shutter_times;
     glint_status status = count > 0 ? plan_times(study, setting, count, &times, error) : GLINT_OK;
     if (!status)
         status = cost_setting_apply(setting, scene, error);
-    if (!status && setting->is_painted)
-        status = cost_scene_show_light(scene, setting->light, error);
     if (status)
         drop_times(times, count);
     else if (times)
@@ -123,12 +121,12 @@ static int drop_plan(lua_State *L)
     return 0;
 }
 
-// plan(choice, shot, samples, seed, exact, light): plans the frame with the values of knobs in the table. shot: "file"
-// (the default) as the script's frame is written; "both": with the linear picture too; "beauty": this picture only;
-// "decisions": matt white, lit by light number `light`; nil: by all. exact: decided in double.
+// plan(choice, shot, samples, seed, exact): plans the frame with the values of knobs in the table. shot: "file" (the
+// default) as the script's frame is written; "both": with the linear picture too; "beauty": this picture only. exact:
+// decided in double.
 static int plan(lua_State *L)
 {
-    lua_settop(L, 6);
+    lua_settop(L, 5);
     cost_study *study = cost_study_of(L);
     planned *p = glintL_push_owner(L, sizeof *p, PLAN, drop_plan);
     glint_error error;
@@ -153,13 +151,6 @@ static double cpu_ms(void)
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
-
-// cpu(): returns the processor time so far, of all threads of the process.
-static int cpu(lua_State *L)
-{
-    lua_pushnumber(L, cpu_ms());
-    return 1;
 }
 
 static glint_status encode_values(const glint_image *image, glint_error *error)
@@ -326,6 +317,6 @@ static int picture(lua_State *L)
 }
 
 const luaL_Reg cost_measure_functions[] = {
-    { "plan", plan },       { "rays", rays },        { "cpu", cpu }, { "time", time_run },
+    { "plan", plan },       { "rays", rays },        { "time", time_run },
     { "picture", picture }, { "close", drop_image }, { NULL, NULL },
 };

@@ -13,45 +13,34 @@ local function cell(value, how, shown)
   return format("<td data-v='%.9g'>", value) .. format(how, shown or value) .. "</td>"
 end
 
-local function remarks_of(row)
-  return (row.front and ", on the front" or "") .. (row.default and ", the script's own" or "")
-    .. (not row.own and not row.partial and row.difference == 0 and ", no difference in time" or "")
-    .. (row.error and not row.resolved and ", error not resolved" or "")
-    .. ((row.partial or row.case.left_out) and ", partial" or "")
-end
-
 -- Returns the tooltip of the row's point.
 local function text_of(row)
-  local time, error = row.case.time, row.error
-  local text = format("%s: %.4g ms by the clock, %.4g ms (%.4g to %.4g) of processor time, %.3g times the fastest",
-    the.html(row.own and "the script's own setting" or row.name), row.case.wall.median, time.median, time.q1, time.q3,
-      row.x_fastest)
+  local time, error, case = row.case.time, row.error, row.case
+  local text = format("%s: %.4g ms of processor time (%.4g to %.4g), %.4g ms by the clock, %.3g times the script&#39;s",
+    the.html(row.own and "the script's own setting" or row.name), time.median, time.q1, time.q3, case.wall.median,
+    row.x_own)
   if error then
-    text = text .. format("; RMSE %.2g, FLIP %.2g, %.2g %% of the pixels off by more than one 8-bit step", error.rmse,
-      error.flip, 100 * error.over1)
+    text = text .. format("; RMSE %.2g", error.rmse) .. (error.noise and format(" +- %.1g (noise %.2g, bias %s)",
+      error.spread, error.noise, the.bias_of(error)) or "")
+      .. format(", FLIP %.2g, %.2g %% of the pixels off by more than one 8-bit value",
+        error.flip, 100 * error.over1)
   end
-  return text .. the.html(remarks_of(row))
+  return text .. the.html(the.remarks_of(row))
 end
+the.text_of = text_of
 
 local function errors_of(row)
-  local case, e = row.case, row.error or {}
-  local work = case.work or {}
-  return cell(e.rmse, "%.2g") .. cell(e.relmse, "%.2g") .. cell(e.max_code, "%.3g")
-    .. cell(e.over1, "%.2g %%", 100 * (e.over1 or 0)) .. cell(e.over8, "%.2g %%", 100 * (e.over8 or 0))
-    .. cell(e.flip, "%.2g") .. cell(row.error and case.wrong_object, "%.0f") .. cell(row.error and case.wrong_shadow,
-      "%.0f")
-    .. cell(all_rays(case), "%.0f") .. cell(work.tests, "%.0f") .. cell(work.light_samples, "%.0f")
-    .. cell(work.powers, "%.0f")
+  local e = row.error or {}
+  return cell(e.rmse, "%.2g") .. cell(e.spread, "%.1g") .. cell(e.noise, "%.2g")
+    .. cell(e.bias, "%s", e.bias and the.bias_of(e)) .. cell(e.over1, "%.2g %%", 100 * (e.over1 or 0))
+    .. cell(e.flip, "%.2g")
 end
 
 local function row_of(row)
-  local time, remarks = row.case.time, remarks_of(row)
+  local time, remarks = row.case.time, the.remarks_of(row)
   return format("<tr id='row-%d' data-text='%s'><td data-v='%03d'><span class='%s'>%s</span></td>", row.index,
-    text_of(row),
-      row.index, row.default and "own" or row.front and "best" or "", the.html(row.name))
-    .. cell(time.median, "%.4g") .. format("<td data-v='%.9g'>%.4g &ndash; %.4g</td>", time.q3 - time.q1, time.q1,
-      time.q3)
-    .. cell(row.x_fastest, "%.3g") .. errors_of(row)
+    text_of(row), row.index, row.default and "own" or row.front and "best" or "", the.html(row.name))
+    .. cell(time.median, "%.4g") .. cell(row.x_own, "%.3g") .. errors_of(row)
     .. format("<td class='remark' data-v='%s'>%s</td></tr>\n", the.html(remarks), the.html(remarks:sub(3)))
 end
 
@@ -83,10 +72,11 @@ end
 local function reference_of(study)
   local reference = study.reference
   if not reference then return "No reference was rendered, so no error is known." end
-  return format("Errors are against the mean of %d pictures of %.0f samples a pixel, decided in double "
-    .. "precision, with seeds %s%s. Their difference shows that this mean itself has an error of about %.2g RMSE; "
-    .. "errors below ten times that value are marked as not resolved. ", #reference.seeds, reference.samples,
-    the.seeds_of(reference), study.truth, reference.rmse) .. the.estimates_of(study)
+  return format("Each setting was rendered with %d or more seeds, none of them the script's. Errors are against the "
+    .. "mean of %d pictures of %.0f samples a pixel, decided in double precision, with seeds %s%s. Their difference "
+    .. "shows that this mean itself has an error of about %.2g RMSE, which is taken out; errors below three times that "
+    .. "value are marked as not resolved.", the.PICTURES, #reference.seeds, reference.samples,
+    the.spell_seeds(reference.seeds), study.truth, reference.rmse)
 end
 
 local function left_out_of(study)
@@ -97,11 +87,15 @@ local function left_out_of(study)
 end
 
 function the.page(study)
-  local rows = {}
-  for i, row in ipairs(study.rows) do rows[i] = row_of(row) end
+  local rows, apart = {}, {}
+  for _, row in ipairs(study.rows) do
+    local list = row.other_time and apart or rows
+    list[#list + 1] = row_of(row)
+  end
   local parts = { SCRIPT = the.html(study.script), LEAD = lead_of(study), REFERENCE = reference_of(study),
     PLOT = the.plot(study) or "", ROWS = table.concat(rows), LEFT_OUT = left_out_of(study),
-    PICTURES = pictures_of(study), ADVICE = the.html(study.advice),
+    APART = #apart > 0 and "<tr><td class='apart'>an unchanged frame after its neighbour</td></tr>\n"
+      .. table.concat(apart) or "", PICTURES = pictures_of(study), ADVICE = the.html(study.advice.text),
     LIVE = study.live and "<h2>Try it</h2>\n" .. study.live or "" }
   return (study.page:gsub("@(%u[%u_]*)@", parts))
 end

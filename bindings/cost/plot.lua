@@ -79,7 +79,7 @@ function the.plot(study)
       (LEFT + WIDTH - RIGHT) // 2, HEIGHT - 12)
     put("<text class='name' transform='translate(15 %d) rotate(-90)' text-anchor='middle'>error: RMSE of linear "
       .. "light</text>\n", (TOP + HEIGHT - BOTTOM) // 2)
-    local floor = 10 * (study.reference and study.reference.rmse or 0)
+    local floor = 3 * (study.reference and study.reference.rmse or 0)
     if floor > 0 and log(floor, 10) > error.low and log(floor, 10) < error.high then
       take(LEFT + 6, y_of(floor), 230, 17)
       put("<path class='floor' d='M%d %.1fH%d'/><text class='tick' x='%d' y='%.1f'>below: not resolved by the "
@@ -113,12 +113,15 @@ function the.plot(study)
   local function draw_point(row)
     local t, e = row.case.time, row.error.rmse
     local x, y = x_of(t.median), y_of(e)
-    put("<g class='point%s%s' tabindex='0' role='img' data-row='%d' aria-label='%s: %.4g ms of processor time, "
-      .. "error %.2g%s'>",
-      row.front and " best" or "", row.own and " own" or "", row.index,
-      the.html(row.own and "the script's own setting" or row.name), t.median, e, row.front and ", on the front" or "")
+    put("<g class='point%s%s' tabindex='0' role='img' data-row='%d' aria-label='%s'><title>%s</title>",
+      row.front and " best" or "", row.own and " own" or "", row.index, the.text_of(row), the.text_of(row))
     put("<circle class='reach' cx='%.1f' cy='%.1f' r='14'/>", x, y)
-    put("<path class='spread' d='M%.1f %.1fH%.1f'/>", x_of(math.max(t.q1, 1e-6)), y, x_of(math.max(t.q3, 1e-6)))
+    local spread, bias = row.error.spread or 0, row.error.bias or 0
+    put("<path class='spread' d='M%.1f %.1fH%.1fM%.1f %.1fV%.1f'/>", x_of(math.max(t.q1, 1e-6)), y, x_of(math.max(t.q3,
+      1e-6)), x, y_of(math.max(e - spread, e / 2)), y_of(e + spread))
+    if bias > 0 and log(bias, 10) > error.low then
+      put("<path class='spread' d='M%.1f %.1fl8 8m0 -8l-8 8'/>", x - 4, y_of(bias) - 4)
+    end
     if row.own then
       put("<path class='mark' d='M%.1f %.1fl8 8l-8 8l-8 -8z'/>", x, y - 8)
     else

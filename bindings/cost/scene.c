@@ -95,27 +95,3 @@ glint_status cost_scene_restore(cost_scene *scene, glint_error *error)
     cost_scene_restore_meshes(scene);
     return status;
 }
-
-static void set_three(double out[3], double value) { out[0] = out[1] = out[2] = value; }
-
-glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error)
-{
-    glint_material_desc white = glint_material_desc_default();
-    glint_scene_desc direct = *glint_scene_get(scene->scene);
-    direct.has_indirect = direct.has_ambient_occlusion = false;
-    glint_status status = glint_scene_set(scene->scene, &direct, error);
-    white.model = GLINT_MODEL_LAMBERT;
-    set_three(white.diffuse, 1);
-    for (size_t i = 0; i < scene->material_count && !status; i++)
-        status = glint_material_set(scene->materials[i], &white, error);
-    for (size_t i = 0; i < scene->light_count && !status; i++) {
-        glint_light_desc desc = *glint_light_get(scene->lights[i]);
-        desc.has_diffuse = desc.has_specular = desc.has_radiance = false;
-        desc.intensity = light >= scene->light_count || i == light ? 1 : 0;
-        set_three(desc.color, 1);
-        set_three(desc.attenuation, 0);
-        desc.attenuation[0] = 1;
-        status = glint_light_set(scene->lights[i], &desc, error);
-    }
-    return status;
-}

@@ -51,22 +51,18 @@ static void read_render(lua_State *L, glintL_render *render)
 
 static void read_shot(lua_State *L, const cost_study *study, cost_setting *out)
 {
-    enum { AS_FILE, AS_BOTH, AS_BEAUTY, AS_DECISIONS };
-    static const char *const SHOTS[] = { "file", "both", "beauty", "decisions", NULL };
+    enum { AS_FILE, AS_BOTH };
+    static const char *const SHOTS[] = { "file", "both", "beauty", NULL };
     glint_render_desc *desc = &out->render.desc;
     const int shot = luaL_checkoption(L, 2, "file", SHOTS);
     desc->codes = shot <= AS_BOTH && !glintL_name_is_linear(study->own->output);
     desc->passes = shot == AS_FILE && desc->codes ? 0 : 1u << GLINT_PASS_BEAUTY;
-    if (shot == AS_DECISIONS)
-        desc->passes = 1u << GLINT_PASS_OBJECT_ID | 1u << GLINT_PASS_DIFFUSE;
     desc->samples = luaL_optnumber(L, 3, desc->samples);
     desc->seed = luaL_optnumber(L, 4, desc->seed);
     if (lua_toboolean(L, 5)) {
         desc->adaptive = 0;
         desc->precision = GLINT_DOUBLE;
     }
-    out->is_painted = shot == AS_DECISIONS;
-    out->light = (size_t)luaL_optinteger(L, 6, (lua_Integer)study->scene.light_count + 1) - 1;
 }
 
 void cost_setting_read(lua_State *L, const cost_study *study, cost_setting *out)

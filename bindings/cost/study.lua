@@ -4,13 +4,11 @@ local the = ...
 local format = string.format
 
 local RUNS <const>, RUNS_QUICK <const> = 11, 5 -- timed runs of each setting, not counting the first
-local MORE_RUNS <const> = 3 -- factor of runs for settings whose quartile range overlaps a neighbour's
 local RUN_MS <const>, RUN_QUICK_MS <const> = 30.0, 5.0 -- short frames are repeated until a run takes this long
 local ALLOWANCE_MS <const>, ALLOWANCE_QUICK_MS <const> = 45e3, 5e3 -- time for the reference without a budget
 local BUDGET_SHARE <const> = 0.3 -- share of a budget for the reference
 local BASE_FRAMES <const> = 3 -- frames: one that is dropped, one that counts the work, one that is timed
 local LONG_MS <const> = 120e3 -- a longer study is announced
-local LABEL_MAX <const> = 127 -- bytes of a combination's label
 local PAGE_MAX <const> = 12000000 -- bytes of pictures embedded in the page
 the.RUNS_LEAST = 3 -- quartiles of fewer runs mean nothing
 
@@ -24,20 +22,11 @@ function the.leave_out(study, ...) study.left_out[#study.left_out + 1] = format(
 
 -- Adds a setting to measure. choice: the value of each knob that differs from the base.
 local function add_case(study, choice, name)
-  local case = { choice = choice, name = name, settings = {}, runs = 0, batch = 1, estimate_ms = 0.0, left_out = false,
-    is_first_alone = false, wrong_object = 0, wrong_shadow = 0,
+  local case = { choice = choice, name = name, knob = next(choice), runs = 0, batch = 1, estimate_ms = 0.0,
+    left_out = false, is_first_alone = false, squares = {}, products = {}, -- of the errors of pictures, see replicate
     ms = { render = {}, tone = {}, encode = {}, wall = {}, cpu = {} } }
-  for _, knob in ipairs(the.knobs) do
-    local value = choice[knob.name]
-    if value then case.settings[#case.settings + 1] = { knob = knob.name, value = value } end
-  end
   study.cases[#study.cases + 1] = case
   return case
-end
-
-local function add_row(study, row)
-  row.own = row.case == study.own
-  study.rows[#study.rows + 1] = row
 end
 
 -- Varies one knob around the base.
@@ -47,19 +36,14 @@ local function add_knob(study, knob)
     local label = the.spell(value)
     local name = knob.name .. " " .. label
     local case = i == (values.base or values.own) and study.own or add_case(study, { [knob.name] = value }, name)
-    add_row(study, { knob = knob.name, value = value, label = label, name = name, case = case,
+    study.rows[#study.rows + 1] = { knob = knob.name, value = value, label = label, name = name, case = case,
+      own = case == study.own,
       own_label = the.spell(values[values.own]), default = i == values.own, is_of_file = knob.is_of_file,
-      other_time = knob.is_other_time or false })
+      other_time = knob.is_other_time or false, may_lose = knob.loses,
+      is_truer = values.truth and values.own < i and i <= values.truth }
     case.needs_file = case.needs_file or knob.is_of_file
+    case.may_lose = knob.loses and case ~= study.own and not study.rows[#study.rows].is_truer
   end
-end
-
-function the.add_combination(study, choice)
-  local case, label = add_case(study, choice), {}
-  for i, setting in ipairs(case.settings) do label[i] = setting.knob .. "=" .. the.spell(setting.value) end
-  case.name = table.concat(label, " "):sub(1, LABEL_MAX)
-  add_row(study, { value = case.name, label = case.name, name = case.name, case = case, default = false,
-    other_time = false })
 end
 
 local function list_cases(study)
@@ -88,17 +72,18 @@ end
 
 -- ---- Measuring ----
 
--- Guesses the times of the cases from index `first` on from their number of rays, before their first run.
-local function guess(study, first)
+-- Guesses the times of the cases from their number of rays, before their first run.
+local function guess(study)
   local function rays_of(case)
     local plan <close> = the.tools.plan(case.choice, "beauty")
     return the.tools.rays(plan)
   end
   local own, own_rays = study.own, rays_of(study.own)
-  for i = first, #study.cases do
+  for i = 2, #study.cases do
     local case = study.cases[i]
     local share = own_rays > 0 and math.max(rays_of(case) / own_rays, 0.2) or 1
-    case.estimate_ms = math.max((own.guess_ms or own.estimate_ms) * share, study.run_ms)
+    case.frame_ms = (own.guess_ms or own.estimate_ms) * share
+    case.estimate_ms = math.max(case.frame_ms, study.run_ms)
   end
 end
 
@@ -109,28 +94,41 @@ local function warn_long(study)
     .. "--size to shorten it, or press Ctrl-C to see the results so far\n", math.ceil(ms / 60e3)))
 end
 
--- Leaves out the slowest cases, from index `first` on, until the others fit the budget.
-local function fit_cases(study, first)
-  -- Returns the time to measure a case: one run, its errors, and the least number of further runs.
-  local function price(case) return study.overhead_ms + case.estimate_ms * (1 + the.RUNS_LEAST) end
+-- Returns the time to measure a case: one run, its errors, its pictures, and the least number of further runs.
+function the.price_of(study, case)
+  return study.overhead_ms + case.estimate_ms * (1 + the.RUNS_LEAST) + case.frame_ms * the.PICTURES
+end
+
+-- Returns the time of a whole study: what it has taken, and what was left out for want of time.
+function the.whole_ms(study)
+  local own, sum = study.own, the.tools.now() - study.start_ms
+  if not own.frame_ms then study.overhead_ms, own.frame_ms = 2 * own.estimate_ms, own.estimate_ms end
+  if not study.reference then sum = sum + the.reference_ms(study) end
+  for _, case in ipairs(study.cases) do
+    if case.runs < the.RUNS_LEAST and case.frame_ms then sum = sum + the.price_of(study, case) end
+  end
+  return 1.5 * sum
+end
+
+-- Leaves out the slowest cases until the others fit the budget.
+local function fit_cases(study)
   repeat
-    local sum, slowest = first == 2 and study.own.estimate_ms * the.RUNS_LEAST or 0, nil
+    local sum, slowest, most = study.own.estimate_ms * the.RUNS_LEAST, nil, 0
     for i = 2, #study.cases do
       local case = study.cases[i]
-      if not case.left_out then
-        sum = sum + (i < first and case.estimate_ms * the.RUNS_LEAST or price(case))
-        if i >= first and (not slowest or price(case) >= price(slowest)) then slowest = case end
-      end
+      local price = case.left_out and 0 or the.price_of(study, case)
+      sum = sum + price
+      if price > 0 and price >= most then slowest, most = case, price end
     end
     local fits = not slowest or sum <= the.left_ms(study)
     if not fits then slowest.left_out = true end
   until fits
 end
 
--- Runs the cases from index `first` on once and measures their errors. Cases that do not fit the budget are left out.
-local function measure_cases(study, first)
-  fit_cases(study, first)
-  for i = first, #study.cases do
+-- Runs the cases once and measures their errors. Cases that do not fit the budget are left out.
+local function measure_cases(study)
+  fit_cases(study)
+  for i = 2, #study.cases do
     local case, remaining_ms = study.cases[i], the.round_ms(study) * study.runs
     for later = i + 1, #study.cases do
       local other = study.cases[later]
@@ -156,7 +154,7 @@ local function measure_own(study)
   local start, own = the.tools.now(), study.own
   the.tools.show("errors", own.estimate_ms, the.round_ms(study) * (study.runs + 2))
   the.measure(study, own)
-  study.overhead_ms = math.max(the.tools.now() - start - own.guess_ms, 0)
+  study.overhead_ms = math.max(the.tools.now() - start - (1 + the.PICTURES) * own.guess_ms, 0)
 end
 
 local function run_study(study)
@@ -164,24 +162,24 @@ local function run_study(study)
   the.tools.show("first frame", 1, 0)
   the.run(own)
   own.is_first_alone = true
+  guess(study)
   if the.left_ms(study) < BASE_FRAMES * own.estimate_ms then
     study.runs = 1
     the.leave_out(study, "every error, and all runs except the first frame: the budget leaves no time for more")
     return name_unmeasured(study)
   end
-  guess(study, 2)
   warn_long(study)
   the.make_reference(study, study.deadline_ms < math.huge and BUDGET_SHARE * the.left_ms(study)
     or study.quick and ALLOWANCE_QUICK_MS or ALLOWANCE_MS)
   measure_own(study)
-  guess(study, 2)
-  measure_cases(study, 2)
-  local combined = #study.cases + 1
-  the.add_combinations(study)
-  guess(study, combined)
-  measure_cases(study, combined)
+  guess(study)
+  measure_cases(study)
   name_unmeasured(study)
   the.time_cases(study)
+  if study.reference then
+    the.decide(study, study.deadline_ms < math.huge and study.deadline_ms
+      or the.tools.now() + study.runs * the.round_ms(study))
+  end
 end
 
 -- ---- Output ----
@@ -221,6 +219,14 @@ local function say_frame(study)
     study.width, study.height, study.samples, study.samples == 1 and "" or "s"))
 end
 
+local function keep_measured(study)
+  local rows = {}
+  for _, row in ipairs(study.rows) do
+    if row.case.runs > 0 then rows[#rows + 1] = row end
+  end
+  study.rows = rows
+end
+
 function the.study(tools)
   the.tools = tools
   if tools.knobs then the.check_knobs(tools.knobs) end
@@ -228,10 +234,11 @@ function the.study(tools)
   study.cases, study.rows, study.values, study.left_out = {}, {}, {}, {}
   study.random, study.deadline_ms = { state = 0 }, study.deadline_ms or math.huge
   study.runs = study.quick and RUNS_QUICK or RUNS
-  study.most_runs, study.run_ms = MORE_RUNS * study.runs, study.quick and RUN_QUICK_MS or RUN_MS
+  study.run_ms = study.quick and RUN_QUICK_MS or RUN_MS
   list_cases(study)
   study.live = tools.live()
   say_frame(study)
+  study.complete = true
   local good, message = pcall(function()
     study.machine = tools.begin()
     run_study(study)
@@ -240,6 +247,7 @@ function the.study(tools)
   study.complete = good
   if not tools.finish() then return end
   the.judge(study)
+  keep_measured(study)
   if #study.rows == 0 then return end
   study.seconds = (tools.now() - study.start_ms) * 1e-3
   tools.print(study.json and the.events(study) or the.table(study))

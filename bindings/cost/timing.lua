@@ -62,43 +62,12 @@ function the.summarize(study)
   end
 end
 
--- Returns whether a case's quartile range overlaps neither neighbour's in the order of times.
-function the.is_apart(study, case)
-  local below, above
-  for _, other in ipairs(study.cases) do
-    local ms = other.time.median
-    if other ~= case and not other.left_out and other.runs > 0 then
-      if ms <= case.time.median and (not below or ms > below.median) then below = other.time end
-      if ms >= case.time.median and (not above or ms < above.median) then above = other.time end
-    end
-  end
-  return (not below or below.q3 < case.time.q1) and (not above or above.q1 > case.time.q3)
-end
-
 -- ---- The budget ----
-
--- Drops the slowest case except the script's own. Returns nil if there is no other.
-local function drop_slowest(study)
-  local slowest
-  for i, case in ipairs(study.cases) do
-    if i > 1 and not case.left_out and case.runs > 0 and (not slowest or case.estimate_ms > slowest.estimate_ms) then
-      slowest = case
-    end
-  end
-  if not slowest then return end
-  slowest.left_out = true
-  the.leave_out(study, "%s: timed once: the budget leaves no time for %d runs", slowest.name, the.RUNS_LEAST)
-  return slowest
-end
 
 local function fit_budget(study)
   local wanted = study.runs
-  while the.round_ms(study) * the.RUNS_LEAST > the.left_ms(study) and drop_slowest(study) do end
-  local fitting = the.left_ms(study) // the.round_ms(study)
-  if fitting < wanted then study.runs = math.max(fitting, 1) | 0 end
-  if study.runs < wanted then
-    the.leave_out(study, "%d of %d runs of each setting", wanted - study.runs, wanted)
-  end
+  study.runs = math.max(math.min(the.left_ms(study) // the.round_ms(study), wanted), 1) | 0
+  if study.runs < wanted then the.leave_out(study, "%d of %d runs of each setting", wanted - study.runs, wanted) end
 end
 
 -- ---- The runs ----
@@ -111,42 +80,18 @@ local function shuffle(study, cases)
   end
 end
 
-local function run_round(study, cases, remaining_ms)
-  shuffle(study, cases)
-  for _, case in ipairs(cases) do
-    remaining_ms = remaining_ms - case.estimate_ms
-    the.tools.show("timing", case.estimate_ms, remaining_ms)
-    the.run(case)
-  end
-end
-
--- Returns the timed cases and the time of a round. may_repeat: only the cases for which it returns true.
-local function list_cases(study, may_repeat)
-  local cases, ms = {}, 0.0
-  for _, case in ipairs(study.cases) do
-    if not case.left_out and case.runs > 0 and (not may_repeat or may_repeat(case)) then
-      cases[#cases + 1], ms = case, ms + case.estimate_ms
-    end
-  end
-  return cases, ms
-end
-
--- Runs all cases; then repeats those whose quartile range overlaps a neighbour's, up to the most runs or the budget's
--- end. If the ranges always overlap, the two cost the same.
+-- Runs all cases, each `study.runs` times.
 function the.time_cases(study)
   fit_budget(study)
-  local cases, ms = list_cases(study)
-  for round = 0, study.runs - 1 do run_round(study, cases, ms * (study.runs - round)) end
-  while study.runs >= the.RUNS_LEAST do
-    the.summarize(study)
-    cases, ms = list_cases(study, function(case)
-      return case.runs < study.most_runs and not the.is_apart(study, case)
-    end)
-    if #cases == 0 then return end
-    if ms > the.left_ms(study) then
-      return the.leave_out(study, "more runs of %d settings whose times still overlap: the budget leaves no time",
-        #cases)
+  local cases, ms = {}, 0.0
+  for _, case in ipairs(study.cases) do
+    if not case.left_out and case.runs > 0 then cases[#cases + 1], ms = case, ms + case.estimate_ms end
+  end
+  for round = 1, study.runs do
+    shuffle(study, cases)
+    for i, case in ipairs(cases) do
+      the.tools.show("timing", case.estimate_ms, ms * (study.runs - round + 1 - i / #cases))
+      the.run(case)
     end
-    run_round(study, cases, ms)
   end
 end
