@@ -213,7 +213,7 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install uninstall \
+.PHONY: all need deps check check-run asan tsan hard hard-run calibrate soak soak-run bench demo demo-run install uninstall \
         install-rock golden-update gallery check-layers check-symbols check-headers lint clean help tests FORCE
 
 # The manual page and the API for editors: the new program inserts the engine's tables of fields, if it can run here.
@@ -553,6 +553,9 @@ hard-run: $(HARD_BIN) $(BUILD)/glint.so
 SOAK_RAYS ?= 1e8
 SOAK_SECONDS ?= 300
 SOAK_SEED ?= 7
+
+calibrate: all ## how often --until and the advice of glint cost are right: 12 scenes, 10 seeds; QUICK=1: small pictures, minutes
+	@BUILD=$(BUILD) $(LUA) tests/bench/calibrate.lua 12 10 $(if $(QUICK),48x27,160x90)
 
 soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases with SOAK_RAYS rays (1e8: half an hour)
 	@tests/deps.sh build test

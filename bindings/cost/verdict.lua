@@ -116,6 +116,10 @@ function the.judge_error(study, row)
   if row.own then row.verdict = "equal" return end
   local average, margin = the.compare(study, case, study.own)
   row.average, row.margin = average, margin
+  if row.is_truer and case.film.bias > study.own.film.bias then -- chance: it has no more bias
+    case.film.bias = study.own.film.bias
+    case.film.noise = sqrt(math.max(case.film.rmse ^ 2 - case.film.bias ^ 2, 0))
+  end
   row.verdict = row.loss and "effect lost" or math.abs(average) + margin <= SAME and "equal"
     or average + margin < 0 and "better" or average - margin > 0 and not row.is_truer and "worse" or "not decided"
   row.is_as_good = not row.loss and the.is_below(average, margin, SAME)
