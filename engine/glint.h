@@ -91,7 +91,9 @@ typedef enum glint_input {
     GLINT_INPUT_UV_U,
     GLINT_INPUT_UV_V, ///< the second surface coordinate
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, in world units
-    GLINT_INPUT_UV_FOOTPRINT, ///< width of a pixel at the point, in units of u and v
+    GLINT_INPUT_UV_FOOTPRINT, ///< width of a pixel at the point, in units of u and v: by the one that grows faster
+    GLINT_INPUT_UV_FOOTPRINT_U, ///< the same in units of u
+    GLINT_INPUT_UV_FOOTPRINT_V, ///< the same in units of v
     GLINT_INPUT_L_X, ///< x of the direction towards the light; this and all later inputs are for shaders only
     GLINT_INPUT_L_Y, ///< its y
     GLINT_INPUT_L_Z, ///< its z
@@ -225,11 +227,16 @@ glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_v
 /// Makes the colour of a texture, as red, green, blue and alpha.
 ///
 /// u, v       (0, 0) is the lower left corner of the picture, (1, 1) the upper right.
-/// footprint  width over which the picture is averaged, in units of u and v; 0 or less: no averaging.
+/// footprint  width over which the picture is averaged, in units of u and v; 0 or less: no averaging. If the picture is
+///            not square and the width is computed from GLINT_INPUT_UV_FOOTPRINT, each axis has its own width:
+///            computed from GLINT_INPUT_UV_FOOTPRINT_U and _V instead.
 ///
 /// The program retains the texture.
 glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
                                  glint_value footprint, glint_value out[4], glint_error *error);
+/// Does the same with a width for each axis, footprint[0] in units of u and footprint[1] in units of v.
+glint_status glint_builder_texel_by_axis(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
+                                         const glint_value footprint[2], glint_value out[4], glint_error *error);
 /// Returns whether a value is a number, and writes the number unless `number` is NULL. Also returns false if `value`
 /// is not a value of the builder.
 bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number);
@@ -286,7 +293,8 @@ typedef enum glint_wrap {
 } glint_wrap;
 /// How the colour at a point between texels is computed.
 typedef enum glint_filter {
-    /// Interpolates four texels of a mipmap level, which is the picture halved as often as the footprint requires
+    /// Interpolates four texels of a mipmap level, which is the picture halved as often as the footprint requires. If a
+    /// pixel covers more texels along one axis than along the other, takes the mean of up to 16 such colours
     GLINT_FILTER_BILINEAR,
     GLINT_FILTER_NEAREST ///< takes the texel at u, v of the full-size picture
 } glint_filter;

@@ -180,4 +180,5 @@ void glintL_read_inputs(lua_State *L, int index, bool is_shader, double inputs[G
         lua_pop(L, 1);
         memcpy(&inputs[f->first], value, (size_t)f->count * sizeof *value);
     }
+    inputs[GLINT_INPUT_UV_FOOTPRINT_U] = inputs[GLINT_INPUT_UV_FOOTPRINT_V] = inputs[GLINT_INPUT_UV_FOOTPRINT];
 }

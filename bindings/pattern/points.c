@@ -63,6 +63,7 @@ static void make_inputs(uint64_t *state, int number, double in[GLINT_INPUT_COUNT
     in[GLINT_INPUT_UV_V] = between(state, 0, 1);
     in[GLINT_INPUT_FOOTPRINT] = number % 4 == 3 ? 0 : between(state, 0, 0.5);
     in[GLINT_INPUT_UV_FOOTPRINT] = number % 4 == 3 ? 0 : between(state, 0, 0.1);
+    in[GLINT_INPUT_UV_FOOTPRINT_U] = in[GLINT_INPUT_UV_FOOTPRINT_V] = in[GLINT_INPUT_UV_FOOTPRINT];
     in[GLINT_INPUT_DISTANCE] = between(state, 1, 30);
     in[GLINT_INPUT_SHININESS] = between(state, 1, 200);
 }

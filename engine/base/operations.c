@@ -48,8 +48,8 @@ static const glint_op_info operations[GLINT_OP_COUNT] = {
     [GLINT_OP_DOT] = { "dot", 6, 1 },
     [GLINT_OP_NOISE_SLOPE] = { "noise_slope", 4, 3 },
     [GLINT_OP_CELL_SLOPE] = { "cell_slope", 3, 6 },
-    [GLINT_OP_TEXEL] = { "texel", 3, 4 },
-    [GLINT_OP_TEXEL_SLOPE] = { "texel_slope", 3, 8 },
+    [GLINT_OP_TEXEL] = { "texel", 4, 4 },
+    [GLINT_OP_TEXEL_SLOPE] = { "texel_slope", 4, 8 },
 };
 
 static const char *const inputs[GLINT_INPUT_COUNT] = {
@@ -69,6 +69,8 @@ static const char *const inputs[GLINT_INPUT_COUNT] = {
     [GLINT_INPUT_UV_V] = "uv.v",
     [GLINT_INPUT_FOOTPRINT] = "footprint",
     [GLINT_INPUT_UV_FOOTPRINT] = "uv.footprint",
+    [GLINT_INPUT_UV_FOOTPRINT_U] = "uv.footprint.u",
+    [GLINT_INPUT_UV_FOOTPRINT_V] = "uv.footprint.v",
     [GLINT_INPUT_L_X] = "l.x",
     [GLINT_INPUT_L_Y] = "l.y",
     [GLINT_INPUT_L_Z] = "l.z",

@@ -292,16 +292,57 @@ glint_status glint_builder_texture(glint_builder *builder, const glint_texture *
     return GLINT_OK;
 }
 
+glint_status glint_builder_texel_by_axis(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
+                                         const glint_value footprint[2], glint_value out[4], glint_error *error)
+{
+    GLINT_REFUSE_NULL(builder, error);
+    GLINT_REFUSE_NULL(texture, error);
+    GLINT_REFUSE_NULL(footprint, error);
+    GLINT_REFUSE_NULL(out, error);
+    const glint_value operands[] = { u, v, footprint[0], footprint[1] };
+    uint32_t index;
+    const glint_status status = glint_builder_texture(builder, texture, &index, error);
+    return status ? status : glint_builder_add(builder, GLINT_OP_TEXEL, index, operands, out, error);
+}
+
+/// Writes the value that `value` becomes if the input `other` is read instead of UV_FOOTPRINT.
+static glint_status read_instead(glint_builder *builder, glint_value value, glint_input other, glint_value *out, glint_error *error)
+{
+    glint_value *map = malloc(((size_t)value + GLINT_RESULTS_MAX) * sizeof *map), operands[GLINT_OPERANDS_MAX] = { 0 };
+    glint_status status = map ? GLINT_OK : glint_fail_nomem(error);
+    for (glint_value i = 0; i <= value && !status; i++) {
+        const glint_ssa_node node = builder->nodes[i];
+        const bool is_op = glint_ssa_is_op(&node);
+        bool changed = false;
+        if (is_op && node.part > 0)
+            continue; // written together with the first result
+        map[i] = i;
+        if (node.op == GLINT_SSA_INPUT && node.operand[0] == GLINT_INPUT_UV_FOOTPRINT)
+            status = glint_builder_input(builder, other, &map[i], error);
+        for (uint32_t k = 0; is_op && k < glint_op_info_of((glint_op)node.op)->operands; k++) {
+            operands[k] = map[node.operand[k]];
+            changed = changed || operands[k] != node.operand[k];
+        }
+        for (uint32_t k = 1; is_op && k < glint_op_info_of((glint_op)node.op)->results; k++)
+            map[i + k] = i + k;
+        if (changed)
+            status = glint_builder_add(builder, (glint_op)node.op, node.texture, operands, map + i, error);
+    }
+    *out = status ? value : map[value];
+    free(map);
+    return status;
+}
+
 glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
                                  glint_value footprint, glint_value out[4], glint_error *error)
 {
     GLINT_REFUSE_NULL(builder, error);
     GLINT_REFUSE_NULL(texture, error);
-    GLINT_REFUSE_NULL(out, error);
-    const glint_value operands[] = { u, v, footprint };
-    uint32_t index;
-    const glint_status status = glint_builder_texture(builder, texture, &index, error);
-    return status ? status : glint_builder_add(builder, GLINT_OP_TEXEL, index, operands, out, error);
+    glint_value width[2] = { footprint, footprint };
+    glint_status status = GLINT_OK;
+    for (int k = 0; k < 2 && footprint < builder->count && glint_texture_width(texture) != glint_texture_height(texture) && !status; k++)
+        status = read_instead(builder, footprint, k ? GLINT_INPUT_UV_FOOTPRINT_V : GLINT_INPUT_UV_FOOTPRINT_U, &width[k], error);
+    return status ? status : glint_builder_texel_by_axis(builder, texture, u, v, width, out, error);
 }
 
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,

@@ -18,10 +18,15 @@ glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map
     glint_value color[4] = { 0 };
     p.status = glint_builder_create(GLINT_PROGRAM_PATTERN, &p.builder, error);
     const glint_value u = coord_of(&p, map, 0), v = coord_of(&p, map, 1);
+    const bool square = glint_texture_width(texture) == glint_texture_height(texture);
     const double most = fmax(fabs(map->scale[0]), fabs(map->scale[1]));
-    const glint_value width = glint_maker_with(&p, GLINT_OP_MUL, glint_maker_input(&p, GLINT_INPUT_UV_FOOTPRINT), most);
+    glint_value width[2];
+    for (int k = 0; k < 2; k++) {
+        const glint_input input = square ? GLINT_INPUT_UV_FOOTPRINT : k ? GLINT_INPUT_UV_FOOTPRINT_V : GLINT_INPUT_UV_FOOTPRINT_U;
+        width[k] = glint_maker_with(&p, GLINT_OP_MUL, glint_maker_input(&p, input), square ? most : fabs(map->scale[k]));
+    }
     if (!p.status)
-        p.status = glint_builder_texel(p.builder, texture, u, v, width, color, error);
+        p.status = glint_builder_texel_by_axis(p.builder, texture, u, v, width, color, error);
     for (int c = 0; c < 3; c++)
         color[c] = glint_maker_with(&p, GLINT_OP_MUL, color[c], factor[c]);
     if (!p.status)
@@ -34,7 +39,9 @@ glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glin
 {
     static const double one[3] = { 1, 1, 1 },
                         // a footprint of 1 averages the whole picture
-                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 };
+                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1,
+                                                      [GLINT_INPUT_UV_FOOTPRINT_U] = 1,
+                                                      [GLINT_INPUT_UV_FOOTPRINT_V] = 1 };
     const glint_mesh_map whole = { .scale = { 1, 1 } };
     double mean[3] = { 0 };
     glint_program *program = NULL;

@@ -29,21 +29,26 @@ static glint_texture *load(glint_wrap wrap, glint_filter filter, bool linear)
     return texture;
 }
 
-/// Samples a texture with the kernel that frames use.
-static void texel(const glint_texture *texture, double u, double v, double footprint, double out[4])
+/// Samples a texture with the kernel that frames use. across, down: footprints in units of u and v.
+static void texel_by_axis(const glint_texture *texture, double u, double v, double across, double down, double out[4])
 {
     glint_builder *b;
     glint_program *p;
-    glint_value at[3], color[4];
-    const double inputs[GLINT_INPUT_COUNT] = { u, v, footprint };
+    glint_value at[4], color[4];
+    const double inputs[GLINT_INPUT_COUNT] = { u, v, across, down };
     assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error), GLINT_OK);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 4; k++)
         glint_builder_input(b, (glint_input)k, &at[k], &error);
-    assert_int_equal(glint_builder_texel(b, texture, at[0], at[1], at[2], color, &error), GLINT_OK);
+    assert_int_equal(glint_builder_texel_by_axis(b, texture, at[0], at[1], at + 2, color, &error), GLINT_OK);
     assert_int_equal(glint_program_make(b, color, 4, &p, &error), GLINT_OK);
     assert_int_equal(glint_program_evaluate(p, inputs, out, &error), GLINT_OK);
     glint_program_release(p);
     glint_builder_destroy(b);
+}
+
+static void texel(const glint_texture *texture, double u, double v, double footprint, double out[4])
+{
+    texel_by_axis(texture, u, v, footprint, footprint, out);
 }
 
 static void expect(const glint_texture *texture, double u, double v, double red, double green, double blue,
@@ -164,20 +169,31 @@ static void test_footprints(void **state)
     write_png(path, 64, 16, PNG_COLOR_TYPE_GRAY, 8, 0, samples);
     glint_texture *t = load(GLINT_WRAP_REPEAT, GLINT_FILTER_BILINEAR, true);
     double all[4], one[4], high[4], between_[4], low[4];
-    texel(t, 0.3, 0.3, 1, all);
+    texel_by_axis(t, 0.3, 0.3, 1, 1, all);
     assert_true(fabs(all[0] - 1.0 / (64 * 16)) < 1e-9);
-    texel(t, 9.5 / 64, 1 - 5.5 / 16, 1.0 / 64, one);
+    texel_by_axis(t, 9.5 / 64, 1 - 5.5 / 16, 1.0 / 64, 1.0 / 16, one);
     assert_true(one[0] == 1);
-    texel(t, 10.0 / 64, 1 - 5.0 / 16, 2.0 / 64, high);
-    texel(t, 10.0 / 64, 1 - 5.0 / 16, 4.0 / 64, low);
-    texel(t, 10.0 / 64, 1 - 5.0 / 16, sqrt(8) / 64, between_);
+    texel_by_axis(t, 10.0 / 64, 1 - 5.0 / 16, 2.0 / 64, 2.0 / 16, high);
+    texel_by_axis(t, 10.0 / 64, 1 - 5.0 / 16, 4.0 / 64, 4.0 / 16, low);
+    texel_by_axis(t, 10.0 / 64, 1 - 5.0 / 16, sqrt(8) / 64, sqrt(8) / 16, between_);
     assert_true(high[0] > low[0] && fabs(between_[0] - (high[0] + low[0]) / 2) < 1e-12);
-    double mean = 0;
+    double mean[2] = { 0 };
     for (int i = 0; i < 1024; i++) { // the samples at the centres of a level's texels have the texture's mean
-        texel(t, (i % 64 + 0.5) / 64, (i / 64 + 0.5) / 16, 4.0 / 64, all);
-        mean += all[0] / 1024;
+        texel_by_axis(t, (i % 64 + 0.5) / 64, (i / 64 + 0.5) / 16, 4.0 / 64, 4.0 / 16, all);
+        texel_by_axis(t, (i % 64 + 0.5) / 64, (i / 64 + 0.5) / 16, 12.0 / 64, 2.0 / 16, one);
+        mean[0] += all[0] / 1024;
+        mean[1] += one[0] / 1024;
     }
-    assert_true(fabs(mean - 1.0 / 1024) < 1e-9);
+    assert_true(fabs(mean[0] - 1.0 / 1024) < 1e-9 && fabs(mean[1] - 1.0 / 1024) < 1e-9);
+    // 4 texels wide and 1 high: the mean of bilinear colours at -1.5, -0.5, 0.5, 1.5 texels
+    texel_by_axis(t, 9.5 / 64, 1 - 5.5 / 16, 4.0 / 64, 1.0 / 16, one);
+    assert_true(fabs(one[0] - 0.25) < 1e-12);
+    texel_by_axis(t, 11.0 / 64, 1 - 5.5 / 16, 4.0 / 64, 1.0 / 16, one);
+    assert_true(fabs(one[0] - 0.25) < 1e-12);
+    texel_by_axis(t, 9.5 / 64, 1 - 6.5 / 16, 4.0 / 64, 1.0 / 16, one);
+    assert_true(one[0] == 0);
+    texel_by_axis(t, 9.5 / 64, 1 - 7.5 / 16, 1.0 / 64, 5.0 / 16, one); // two texels below, of five
+    assert_true(fabs(one[0] - 0.2) < 1e-12);
     glint_texture_release(t);
 }
 
@@ -275,7 +291,7 @@ static void test_keys(void **state)
     assert_int_equal(glint_program_evaluate(p, inputs, out, &error), GLINT_OK);
     assert_true(out[0] == 0 && out[2] == 1);
     char *listing = glint_program_listing(p);
-    assert_string_equal(listing, "r0 r1 r2 r3 = texel t0 uv.u uv.v footprint\nreturn r0 r1 r2\n");
+    assert_string_equal(listing, "r0 r1 r2 r3 = texel t0 uv.u uv.v footprint footprint\nreturn r0 r1 r2\n");
     free(listing);
     glint_program_release(p);
 }

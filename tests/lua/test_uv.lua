@@ -173,6 +173,93 @@ function tests.the_footprint_is_that_of_the_steeper_one()
   near((scene:render(PASSES):pixel(20, 15, "albedo")), 0.5, 1e-6, "footprint")
 end
 
+-- ---- Pictures that are not square ------------------------------------------------------------------------------
+
+-- A texture of w x h texels, lit(x, y) from the top left.
+local function picture(w, h, lit)
+  local name, texels = os.tmpname(), {}
+  for y = h - 1, 0, -1 do
+    for x = 0, w - 1 do texels[#texels + 1] = ("<f"):pack(lit(x, y)) end
+  end
+  local file = assert(io.open(name .. ".pfm", "wb"))
+  file:write(("Pf\n%d %d\n-1.0\n"):format(w, h), table.concat(texels))
+  file:close()
+  local texture = glint.texture { file = name .. ".pfm" }
+  os.remove(name)
+  os.remove(name .. ".pfm")
+  return texture
+end
+
+-- A picture over W x H world units, with `across` and `down` pixels, and several samples a pixel.
+local function front_of(texture, W, H, across, down, samples)
+  local mesh = quad { vertices = { { 0, 0, 0 }, { W, 0, 0 }, { W, H, 0 }, { 0, H, 0 } },
+    uv = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, material = glint.material { diffuse = texture } }
+  local camera = glint.camera { eye = { W / 2, H / 2, 5 }, at = { W / 2, H / 2, 0 }, projection = "orthographic", height = H }
+  return glint.scene { camera = camera, ambient = 1, mesh }:render { width = across, height = down, samples = samples, output = "none" }
+end
+
+-- One white texel has the same peak in each shape of picture: at one pixel a texel it is the texel, at four pixels a texel the nearest pixel
+-- centre is an eighth of a texel away on each axis, and bilinear filtering gives (7/8)^2.
+function tests.a_texel_keeps_its_peak()
+  for _, size in ipairs { { 8, 8 }, { 16, 8 }, { 64, 8 }, { 8, 64 }, { 24, 5 } } do
+    local w, h = size[1], size[2]
+    local dot = picture(w, h, function(x, y) return x == w // 2 and y == h // 2 and 1 or 0 end)
+    for scale, want in pairs { [1] = 1, [4] = 49 / 64 } do
+      local image, most = front_of(dot, w, h, w * scale, h * scale), 0
+      for y = 0, h * scale - 1 do
+        for x = 0, w * scale - 1 do most = math.max(most, (image:pixel(x, y))) end
+      end
+      near(most, want, 1e-6, ("the peak of %d x %d at %d pixels a texel"):format(w, h, scale))
+    end
+  end
+end
+
+-- Texels that are not square: a pixel covers several of them along one axis. The mean of 256 samples of the picture at full size is the witness.
+function tests.each_axis_has_its_own_filter()
+  math.randomseed(3)
+  for _, case in ipairs { { 64, 8, 8, 8 }, { 8, 64, 8, 8 }, { 64, 8, 16, 16 }, { 96, 8, 8, 32 }, { 12, 48, 24, 12 } } do
+    local w, h, across, down = table.unpack(case)
+    local values = {}
+    for i = 0, w * h - 1 do values[i] = math.random() end
+    local noise = picture(w, h, function(x, y) return values[y * w + x] end)
+    local got, sum, most = front_of(noise, 1, 1, across, down), 0, 0
+    local uv = glint.pattern(function(_, s) return noise(s.uv) end) -- without a footprint
+    local want = front_of(uv, 1, 1, across, down, 256)
+    for y = 0, down - 1 do
+      for x = 0, across - 1 do
+        local off = math.abs((got:pixel(x, y)) - (want:pixel(x, y)))
+        sum, most = sum + off / (across * down), math.max(most, off)
+      end
+    end
+    check(sum < 0.05 and most < 0.25, "%d x %d on %d x %d pixels: off by %.3f, at most %.3f", w, h, across, down, sum, most)
+  end
+end
+
+-- A map of stripes, twice as wide as high, has the same contrast on a ball as the mean of 256 samples has.
+function tests.a_map_on_a_ball()
+  local w, h = 128, 64
+  for what, lit in pairs { meridians = function(x) return x % 2 end, circles = function(_, y) return y % 2 end } do
+    local map = picture(w, h, lit)
+    local plain = glint.pattern(function(_, s) return map(s.uv) end)
+    local function contrast(diffuse, samples)
+      -- 1.5 pixels a texel at the middle: half a turn is 64 texels over pi radii
+      local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, projection = "orthographic", height = 0.5 },
+        ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { diffuse = diffuse } } }
+      local side = math.floor(0.5 * 1.5 * 64 / math.pi + 0.5)
+      local image, low, high = scene:render { width = side, height = side, samples = samples, output = "none" }, 1, 0
+      for y = side // 2 - 4, side // 2 + 4 do
+        for x = side // 2 - 4, side // 2 + 4 do
+          local v = image:pixel(x, y)
+          low, high = math.min(low, v), math.max(high, v)
+        end
+      end
+      return high - low
+    end
+    local want, got = contrast(plain, 256), contrast(map)
+    check(want > 0.5 and got > want - 0.02, "%s: contrast %.3f, and %.3f of 256 samples", what, got, want)
+  end
+end
+
 -- A picture on a quad, seen from the front, looks like the picture: upright and not mirrored.
 function tests.a_texture_lies_on_a_mesh()
   local name = os.tmpname() .. ".png"

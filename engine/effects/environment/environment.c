@@ -106,7 +106,10 @@ static void put_directions(struct glint_environment *environment, double pixel, 
     }
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
         row[GLINT_INPUT_FOOTPRINT][at + i] = pixel;
+        const double x = row[GLINT_INPUT_P_X][at + i], z = row[GLINT_INPUT_P_Z][at + i];
         row[GLINT_INPUT_UV_FOOTPRINT][at + i] = pixel / TURN;
+        row[GLINT_INPUT_UV_FOOTPRINT_U][at + i] = pixel > 0 ? fmin(pixel / (TURN * sqrt(x * x + z * z)), 1) : 0;
+        row[GLINT_INPUT_UV_FOOTPRINT_V][at + i] = pixel / (TURN / 2);
     }
 }
 

@@ -9,6 +9,8 @@
 #define GLINT_PROGRAM_GROUPS 16 ///< maximum groups per call
 #define GLINT_PROGRAM_LANES 256 ///< lanes per row: one double per lane, 2 KB
 #define GLINT_CODE_OUTPUTS_MAX 96 ///< for gradients; stored programs have at most GLINT_PROGRAM_OUTPUTS_MAX
+#define GLINT_TEXEL_PROBES 16 ///< most positions of a texture that a pixel reads along its longer side
+#define GLINT_TEXEL_SLACK 0.015625 ///< a pixel that is longer by this share of its shorter side counts as square
 #define GLINT_CODE_INPUTS (2 * GLINT_INPUT_COUNT) ///< the inputs, followed from GLINT_INPUT_COUNT on by the slope of
     ///< each input
 #define GLINT_NUMBER_LANES 16 ///< number of copies of a constant in memory: one per lane of a group

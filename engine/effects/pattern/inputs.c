@@ -3,15 +3,19 @@
 #include "engine/tile/batch.h"
 #include "engine/effects/pattern/uv.h"
 
+#include <math.h>
+
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
 #define READS_P BITS(GLINT_INPUT_P_X, 3)
 #define READS_WORLD BITS(GLINT_INPUT_WORLD_X, 3)
 #define READS_N BITS(GLINT_INPUT_N_X, 3)
 #define READS_V BITS(GLINT_INPUT_V_X, 3)
-#define READS_UV_FOOTPRINT BITS(GLINT_INPUT_UV_FOOTPRINT, 1)
+#define READS_UV_FOOTPRINT GLINT_READS_UV_FOOTPRINT
 #define READS_UV GLINT_READS_UV
 #define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | READS_UV_FOOTPRINT)
 #define READS_GATHERED (READS_P | READS_WORLD | READS_N | READS_V | READS_UV | READS_FOOTPRINT)
+
+#define WIDE 0x1p16 // width of a pixel where u or v grows without bound, in their units
 
 /// The group of an entry: its position in the tile and in the rows.
 typedef struct gathering {
@@ -241,8 +245,12 @@ static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
         row(g, GLINT_INPUT_UV_V)[lane] = uv.at[1];
         for (int k = 0; k < 6; k++)
             g->inputs->uv_slope[k / 3][k % 3][g->to + lane] = uv.slope[k / 3][k % 3];
-        if (reads & READS_UV_FOOTPRINT)
-            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = row(g, GLINT_INPUT_FOOTPRINT)[lane] * space->shrink / uv.unit;
+        const double width = reads & READS_UV_FOOTPRINT ? row(g, GLINT_INPUT_FOOTPRINT)[lane] * space->shrink : 0;
+        if (reads & BITS(GLINT_INPUT_UV_FOOTPRINT, 1))
+            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = width / uv.unit;
+        for (int k = 0; k < 2; k++)
+            if (reads & BITS(GLINT_INPUT_UV_FOOTPRINT_U + k, 1))
+                row(g, GLINT_INPUT_UV_FOOTPRINT_U + k)[lane] = fmin(width * sqrt(vec_dot(uv.slope[k], uv.slope[k])), WIDE);
     }
 }
 

@@ -82,14 +82,24 @@ static void texel_slopes(const float *const corner[4], double fx, double fy, con
     }
 }
 
-/// Returns the level that each lane reads; the fraction is the share of the next level.
-static inline vd texel_level(const glint_texture_table *texture, vd footprint)
+/// The positions that each lane reads. A pixel's longer side is covered by several squares as wide as its shorter side.
+typedef struct texel_filter {
+    vd level; ///< the level to read; the fraction is the share of the next level
+    vd probes; ///< number of positions
+    vd u, v; ///< from the first position to the last one
+} texel_filter;
+
+static inline texel_filter texel_filter_of(const glint_texture_table *texture, vd u_footprint, vd v_footprint)
 {
-    const glint_texture_level *whole = &texture->levels[0];
-    const uint32_t side = whole->width < whole->height ? whole->height : whole->width;
-    const vd size = footprint * d_set(side), one = d_set(1);
-    const vd level = d_select(d_lt(one, size), d_log2(size), d_set(0));
-    return d_min(level, d_set(texture->level_count - 1));
+    const vd width = d_set(texture->levels[0].width), height = d_set(texture->levels[0].height), one = d_set(1), none = d_set(0);
+    const vd across = u_footprint * width, down = v_footprint * height;
+    const dm tall = d_lt(across, down);
+    const vd longer = d_select(tall, down, across), shorter = d_select(tall, across, down);
+    const vd size = d_max(d_max(shorter, one), longer / d_set(GLINT_TEXEL_PROBES));
+    const vd level = d_min(d_select(d_lt(one, size), d_log2(size), none), d_set(texture->level_count - 1));
+    const vd spread = (longer - size) / d_select(tall, height, width);
+    return (texel_filter) { level, d_max(d_ceil(longer / size - d_set(GLINT_TEXEL_SLACK)), one), d_select(tall, none, spread),
+                            d_select(tall, spread, none) };
 }
 
 /// Reads the given lanes from their level (`next` 0), or adds the next level times the share of that level (`next`
@@ -132,21 +142,56 @@ static void texel_nearest(const op_call *call, vd u, vd v, bool slope, double ou
             out[lane][c] = slope ? 0 : (double)from->texels[4 * ((size_t)y[lane] * from->width + (size_t)x[lane]) + c];
 }
 
-INNER void texel_vector(const op_call *call, size_t i, bool slope)
+/// Reads the given lanes at one position.
+static void texel_read(const op_call *call, vd u, vd v, vd level, unsigned lanes, bool slope, double out[VD][GLINT_RESULTS_MAX])
 {
-    const vd u = texel_wrap(texel_repeats_u(call->texture), op_in(call, 0, i));
-    const vd v = texel_wrap(texel_repeats_v(call->texture), op_in(call, 1, i));
-    const vd level = texel_level(call->texture, op_in(call, 2, i));
-    double out[VD][GLINT_RESULTS_MAX];
+    const unsigned between = lanes & dm_bits(d_lt(d_floor(level), level));
     _Alignas(64) double levels[VD];
     d_store(levels, level);
+    u = texel_wrap(texel_repeats_u(call->texture), u);
+    v = texel_wrap(texel_repeats_v(call->texture), v);
+    texel_add(call, u, v, levels, lanes, 0, slope, out);
+    if (between)
+        texel_add(call, u, v, levels, between, 1, slope, out);
+}
+
+/// Reads the lanes with several positions, and stores their mean.
+static void texel_probe(const op_call *call, vd u, vd v, const texel_filter *filter, unsigned several, bool slope,
+                        double out[VD][GLINT_RESULTS_MAX])
+{
+    _Alignas(64) double probes[VD];
+    double sum[VD][GLINT_RESULTS_MAX] = { { 0 } }, one[VD][GLINT_RESULTS_MAX];
+    d_store(probes, filter->probes);
+    unsigned lanes = several;
+    for (int i = 0; lanes; i++) {
+        const vd at = d_set(i) / (filter->probes - d_set(1)) - d_set(0.5);
+        texel_read(call, u + filter->u * at, v + filter->v * at, filter->level, lanes, slope, one);
+        for (unsigned bits = lanes; bits; bits &= bits - 1) {
+            const int lane = __builtin_ctz(bits);
+            for (int c = 0; c < (slope ? 8 : 4); c++)
+                sum[lane][c] += one[lane][c];
+            if (i + 1 >= (int)probes[lane])
+                lanes &= ~(1u << lane);
+        }
+    }
+    for (unsigned bits = several; bits; bits &= bits - 1)
+        for (int c = 0, lane = __builtin_ctz(bits); c < (slope ? 8 : 4); c++)
+            out[lane][c] = sum[lane][c] / probes[lane];
+}
+
+INNER void texel_vector(const op_call *call, size_t i, bool slope)
+{
+    const vd u = op_in(call, 0, i), v = op_in(call, 1, i);
+    double out[VD][GLINT_RESULTS_MAX];
     if (call->texture->filter == GLINT_FILTER_NEAREST) {
-        texel_nearest(call, u, v, slope, out);
+        texel_nearest(call, texel_wrap(texel_repeats_u(call->texture), u), texel_wrap(texel_repeats_v(call->texture), v), slope, out);
     } else {
-        const unsigned between = dm_bits(d_lt(d_floor(level), level));
-        texel_add(call, u, v, levels, D_ALL, 0, slope, out);
-        if (between)
-            texel_add(call, u, v, levels, between, 1, slope, out);
+        const texel_filter filter = texel_filter_of(call->texture, op_in(call, 2, i), op_in(call, 3, i));
+        const unsigned several = dm_bits(d_lt(d_set(1), filter.probes));
+        if (several != D_ALL)
+            texel_read(call, u, v, filter.level, D_ALL & ~several, slope, out);
+        if (several)
+            texel_probe(call, u, v, &filter, several, slope, out);
     }
     for (int c = 0; c < (slope ? 8 : 4); c++)
         for (int lane = 0; lane < VD; lane++)

@@ -26,7 +26,9 @@ typedef enum glint_field {
 } glint_field;
 
 /// Bits of the inputs about texture coordinates.
-#define GLINT_READS_UV (1u << GLINT_INPUT_UV_U | 1u << GLINT_INPUT_UV_V | 1u << GLINT_INPUT_UV_FOOTPRINT)
+#define GLINT_READS_UV_FOOTPRINT \
+    (1u << GLINT_INPUT_UV_FOOTPRINT | 1u << GLINT_INPUT_UV_FOOTPRINT_U | 1u << GLINT_INPUT_UV_FOOTPRINT_V)
+#define GLINT_READS_UV (1u << GLINT_INPUT_UV_U | 1u << GLINT_INPUT_UV_V | GLINT_READS_UV_FOOTPRINT)
 
 #define GLINT_FIELDS_PLANES ((1u << GLINT_FIELD_PLANES) - 1) ///< bits of the fields with planes
 

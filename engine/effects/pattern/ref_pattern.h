@@ -220,8 +220,22 @@ static void nearest_texel(const glint_texture_table *texture, double u, double v
         color[c] = (double)l->texels[4 * (j * l->width + i) + c];
 }
 
-/// Reads a texture. in: u, v, footprint. `color` or `slope` is NULL.
-static void op_texel(const glint_texture_table *texture, const double in[3], double *color, double *slope)
+/// Reads a level and, if `level` is not whole, the next one.
+static void texel_of_levels(const glint_texture_table *texture, double level, double u, double v, double *color, double *slope)
+{
+    const uint32_t k = (uint32_t)level;
+    double next[GLINT_RESULTS_MAX], *out = color ? color : slope;
+    texel_of_level(texture, k, u, v, color, slope);
+    if (!(level > k))
+        return;
+    texel_of_level(texture, k + 1, u, v, color ? next : NULL, color ? NULL : next);
+    for (int c = 0; c < (color ? 4 : 8); c++)
+        out[c] = between_two(level - k, out[c], next[c]);
+}
+
+/// Reads a texture. in: u, v, footprints along u and v. `color` or `slope` is NULL. A pixel's longer side is covered by
+/// several squares as wide as its shorter side.
+static void op_texel(const glint_texture_table *texture, const double in[4], double *color, double *slope)
 {
     double *out = color ? color : slope, next[GLINT_RESULTS_MAX];
     const int count = color ? 4 : 8;
@@ -233,14 +247,27 @@ static void op_texel(const glint_texture_table *texture, const double in[3], dou
         return;
     }
     const glint_texture_level *whole = &texture->levels[0];
-    const double side = whole->width < whole->height ? whole->height : whole->width, size = in[2] * side;
+    const double across = in[2] * whole->width, down = in[3] * whole->height;
+    const double longer = across < down ? down : across, shorter = across < down ? across : down;
+    double size = shorter > 1 ? shorter : 1;
+    size = size > longer / GLINT_TEXEL_PROBES ? size : longer / GLINT_TEXEL_PROBES;
     double level = size > 1 ? op_log2(size) : 0;
     level = level < texture->level_count - 1 ? level : texture->level_count - 1;
-    const uint32_t k = (uint32_t)level;
-    texel_of_level(texture, k, in[0], in[1], color, slope);
-    if (!(level > k))
+    const double probes = ceil(longer / size - GLINT_TEXEL_SLACK);
+    if (!(probes > 1)) {
+        texel_of_levels(texture, level, in[0], in[1], color, slope);
         return;
-    texel_of_level(texture, k + 1, in[0], in[1], color ? next : NULL, color ? NULL : next);
+    }
+    const double spread = (longer - size) / (across < down ? whole->height : whole->width);
     for (int c = 0; c < count; c++)
-        out[c] = between_two(level - k, out[c], next[c]);
+        out[c] = 0;
+    for (int i = 0; i < (int)probes; i++) {
+        const double offset = spread * (i / (probes - 1) - 0.5);
+        const double u = in[0] + (across < down ? 0 : offset), v = in[1] + (across < down ? offset : 0);
+        texel_of_levels(texture, level, u, v, color ? next : NULL, color ? NULL : next);
+        for (int c = 0; c < count; c++)
+            out[c] += next[c];
+    }
+    for (int c = 0; c < count; c++)
+        out[c] /= probes;
 }
