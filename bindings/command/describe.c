@@ -37,7 +37,7 @@ static void print(const description *subject, const char *function, void (*push)
     glintL_made_text made;
     const bool good = glintL_make_text(&MODULE, 1, function, push, subject, &made, message);
     if (good)
-        fwrite(made.text, 1, made.size, subject->out);
+        glintL_put_text(subject->out, made.text, made.size);
     glintL_drop_text(&made);
     if (!good)
         luaL_error(subject->script, "%s", message);

@@ -131,7 +131,10 @@ static void print_frame_line(cli_output *output, const glintL_record *record)
     fprintf(stderr, "frame %" PRId64, record->index);
     if (record->repeat)
         fprintf(stderr, ", repeat %d", record->repeat);
-    fprintf(stderr, ": %s%s", file ? file : "", file ? ", " : "");
+    fputs(": ", stderr);
+    if (file)
+        glintL_put_text(stderr, file, strlen(file));
+    fputs(file ? ", " : "", stderr);
     if (record->build_ms >= SLOW_MS)
         fprintf(stderr, "script %.2f s, render %.2f s", record->build_ms * 1e-3, ms * 1e-3);
     else
@@ -216,7 +219,8 @@ static void report_figure(void *context, const char *kind, const char *path, int
         cli_end_line(output);
     } else if (!output->quiet) {
         print_kept(output);
-        fprintf(stderr, "%s: %s of %" PRId64 " frame%s\n", path, kind, count, count == 1 ? "" : "s");
+        glintL_put_text(stderr, path, strlen(path));
+        fprintf(stderr, ": %s of %" PRId64 " frame%s\n", kind, count, count == 1 ? "" : "s");
     }
 }
 

@@ -64,7 +64,7 @@ static void print_beyond(FILE *out, const glint_ray_counts *rays)
                 beyond_surfaces(rays) / (double)rays->primary, rays->shadow / rays->primary);
 }
 
-static void print_for_people(FILE *out, const glintL_run *run)
+static void write_for_people(FILE *out, const glintL_run *run)
 {
     const glint_effect *effects;
     const glint_stage_info *stages;
@@ -90,6 +90,22 @@ static void print_for_people(FILE *out, const glintL_run *run)
     print_beyond(out, &rays);
     if (run->explain_order)
         print_order(out, run->explain_order);
+}
+
+// Prints the plan. The names in it come from the script. False: out of memory.
+static bool print_for_people(FILE *out, const glintL_run *run)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *made = open_memstream(&text, &size);
+    if (made)
+        write_for_people(made, run);
+    text = made ? glintL_close_text(made, &text) : NULL;
+    if (text)
+        glintL_put_text(out, text, size);
+    const bool good = text != NULL;
+    free(text);
+    return good;
 }
 
 // Prints the instructions of each program, one per line.
@@ -210,7 +226,7 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
     if (options->json)
         print_json(output->data, run, options->programs);
     else
-        print_for_people(output->data, run);
+        good = print_for_people(output->data, run) && good;
     if (options->programs && !options->json)
         print_programs(output->data, run->explain_plan);
     return good ? GLINTL_EXIT_DONE : GLINTL_EXIT_USAGE;

@@ -1,4 +1,4 @@
-// Writes numbers and strings as JSON.
+// Writes numbers and strings as JSON, and text for people.
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -39,6 +39,37 @@ static size_t character_length(const unsigned char *text)
         code = code << 6 | (text[i] & 0x3fu);
     }
     return code < least[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : length;
+}
+
+// Returns the code of a character of two or three bytes.
+static unsigned code_of(const unsigned char *at, size_t length)
+{
+    return length == 2 ? (at[0] & 0x1fu) << 6 | (at[1] & 0x3fu)
+                       : (at[0] & 0x0fu) << 12 | (at[1] & 0x3fu) << 6 | (at[2] & 0x3fu);
+}
+
+// Returns whether a character controls a terminal or the direction of text.
+static bool is_control(unsigned code)
+{
+    return (code >= 0x80 && code < 0xa0) || (code >= 0x200e && code <= 0x200f) || (code >= 0x2028 && code <= 0x202e) ||
+           (code >= 0x2066 && code <= 0x2069);
+}
+
+void glintL_put_text(FILE *out, const char *text, size_t size)
+{
+    const unsigned char *at = (const unsigned char *)text, *end = at + size, *plain = at;
+    while (at < end) {
+        const size_t length = character_length(at), step = length ? length : 1;
+        const unsigned code = length == 2 || length == 3 ? code_of(at, length) : 0;
+        const bool byte = (*at < 0x20 && *at != '\n' && *at != '\t') || *at == 0x7f || length == 0;
+        if (byte || is_control(code)) {
+            fwrite(plain, 1, (size_t)(at - plain), out);
+            fprintf(out, byte ? "\\x%02x" : "\\u%04x", byte ? *at : code);
+            plain = at + step;
+        }
+        at += step;
+    }
+    fwrite(plain, 1, (size_t)(at - plain), out);
 }
 
 void glintL_json_string(FILE *out, const char *text)

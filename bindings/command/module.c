@@ -33,7 +33,7 @@ static int print(lua_State *L)
 {
     size_t size;
     const char *text = luaL_checklstring(L, 1, &size);
-    fwrite(text, 1, size, cli_task_of(L)->output->data);
+    glintL_put_text(cli_task_of(L)->output->data, text, size);
     return 0;
 }
 
@@ -49,8 +49,10 @@ static int event(lua_State *L)
 // say(text): prints a message for people.
 static int say(lua_State *L)
 {
+    size_t size;
+    const char *text = luaL_checklstring(L, 1, &size);
     if (!cli_task_of(L)->output->quiet)
-        fputs(luaL_checkstring(L, 1), stderr);
+        glintL_put_text(stderr, text, size);
     return 0;
 }
 

@@ -34,14 +34,29 @@ bool cli_output_open(cli_output *output, const cli_options *options)
     return true;
 }
 
+// Prints a message. Its further lines are indented, so that none looks like another message.
+static void put_message(FILE *out, const char *message)
+{
+    for (const char *end; (end = strchr(message, '\n')); message = end + 1) {
+        glintL_put_text(out, message, (size_t)(end - message));
+        fputs(end[1] == ' ' || end[1] == '\t' ? "\n" : "\n  ", out);
+    }
+    glintL_put_text(out, message, strlen(message));
+    fputc('\n', out);
+}
+
 static void print_line(cli_output *output, const char *color, const char *kind, const char *message)
 {
     if (output->progress)
         cli_progress_clear(output->progress);
-    if (output->color)
-        fprintf(stderr, "glint: %s%s\033[0m%s\n", color, kind, message);
-    else
-        fprintf(stderr, "glint: %s%s\n", kind, message);
+    char *line = NULL;
+    size_t size = 0;
+    FILE *made = open_memstream(&line, &size), *out = made ? made : stderr; // one write, so that lines stay whole
+    fprintf(out, output->color ? "glint: %s%s\033[0m" : "glint: %.0s%s", color, kind);
+    put_message(out, message);
+    if (made && fclose(made) == 0)
+        fwrite(line, 1, size, stderr);
+    free(line);
 }
 
 void cli_print_error(cli_output *output, const char *message) { print_line(output, "\033[1;31m", "error: ", message); }

@@ -55,7 +55,7 @@ static void draw_line(cli_progress *progress, double share, const char *text)
         bar[width] = '\0';
         fprintf(stderr, "%s[%s]%s ", progress->color ? "\033[36m" : "", bar, progress->color ? "\033[0m" : "");
     }
-    fprintf(stderr, "%.*s", columns - 1, text);
+    glintL_put_text(stderr, text, strnlen(text, (size_t)(columns - 1)));
     fflush(stderr);
     progress->is_drawn = true;
 }

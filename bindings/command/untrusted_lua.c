@@ -86,6 +86,23 @@ static int set_metatable(lua_State *L)
     return 1;
 }
 
+// print(...) with control characters escaped.
+static int print_escaped(lua_State *L)
+{
+    const int count = lua_gettop(L);
+    for (int i = 1; i <= count; i++) {
+        size_t size;
+        const char *text = luaL_tolstring(L, i, &size);
+        if (i > 1)
+            fputc('\t', stdout);
+        glintL_put_text(stdout, text, size);
+        lua_pop(L, 1);
+    }
+    fputc('\n', stdout);
+    fflush(stdout);
+    return 0;
+}
+
 // `require "glint"` returns the upvalue.
 static int require_glint(lua_State *L)
 {
@@ -168,8 +185,16 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
         open_library(L, &LIBRARIES[i], 1);
     lua_pushcfunction(L, luaopen_glint);
     lua_call(L, 0, 1);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE); // only glint's functions reach it
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, "glint");
+    lua_getfield(L, 1, LUA_MATHLIBNAME);
+    lua_setfield(L, -2, LUA_MATHLIBNAME);
+    lua_pop(L, 1);
     lua_pushcclosure(L, require_glint, 1);
     lua_setfield(L, 1, "require");
+    lua_pushcfunction(L, print_escaped);
+    lua_setfield(L, 1, "print");
     lua_pushcfunction(L, set_metatable);
     lua_setfield(L, 1, "setmetatable");
     lua_pushvalue(L, 1);

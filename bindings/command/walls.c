@@ -12,6 +12,7 @@
 #include <seccomp.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -165,7 +166,6 @@ static const int allowed[] = {
     SCMP_SYS(lstat),
     SCMP_SYS(madvise),
     SCMP_SYS(membarrier),
-    SCMP_SYS(mmap),
     SCMP_SYS(mprotect),
     SCMP_SYS(mremap),
     SCMP_SYS(munmap),
@@ -216,7 +216,8 @@ static int add_rules(scmp_filter_ctx filter, int data)
                               flags = SCMP_A1(SCMP_CMP_EQ, F_GETFL), terminal = SCMP_A1(SCMP_CMP_EQ, TCGETS),
                               width = SCMP_A1(SCMP_CMP_EQ, TIOCGWINSZ), few = SCMP_A2(SCMP_CMP_LE, WRITE_LIMIT),
                               errors = SCMP_A0(SCMP_CMP_LE, STDERR_FILENO),
-                              report = SCMP_A0(SCMP_CMP_EQ, (uint64_t)data);
+                              report = SCMP_A0(SCMP_CMP_EQ, (uint64_t)data),
+                              unshared = SCMP_A3(SCMP_CMP_MASKED_EQ, MAP_SHARED, 0);
     const struct {
         int call;
         unsigned count;
@@ -228,6 +229,7 @@ static int add_rules(scmp_filter_ctx filter, int data)
         { SCMP_SYS(ioctl), 1, { terminal } },
         { SCMP_SYS(ioctl), 1, { width } },
         { SCMP_SYS(prlimit64), 2, { own, no_new } }, // only to read its own limits
+        { SCMP_SYS(mmap), 1, { unshared } }, // bytes stored through a mapping are not counted
         { SCMP_SYS(write), 1, { few } },
         { SCMP_SYS(pwrite64), 1, { few } },
         { SCMP_SYS(writev), 1, { errors } }, // not to pictures: a filter cannot see the number of bytes

@@ -210,7 +210,7 @@ static int say(lua_State *L)
     if (output->progress)
         cli_progress_clear(output->progress);
     if (!output->quiet)
-        fputs(luaL_checkstring(L, 1), stderr);
+        glintL_put_text(stderr, luaL_checkstring(L, 1), (size_t)luaL_len(L, 1));
     return 0;
 }
 

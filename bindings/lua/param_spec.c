@@ -5,8 +5,7 @@
 
 #include "bindings/run/run.h"
 
-// Pushes the allowed values of a parameter, for messages. `spec` is an absolute index.
-static const char *push_allowed(lua_State *L, int spec)
+const char *glintL_push_allowed(lua_State *L, int spec)
 {
     luaL_Buffer out;
     luaL_checkstack(L, 12, "params");
@@ -174,7 +173,7 @@ static void push_given(lua_State *L, const glintL_set *set, const char *text, in
     lua_getfield(L, spec, "default");
     bool good = push_literal(L, text, lua_gettop(L));
     if (!good || !is_allowed(L, spec, lua_gettop(L))) {
-        lua_pushfstring(L, "--%s %s: %s expected, got '%s'", set->values ? "sweep" : "set", set->name, push_allowed(L, spec), text);
+        lua_pushfstring(L, "--%s %s: %s expected, got '%s'", set->values ? "sweep" : "set", set->name, glintL_push_allowed(L, spec), text);
         lua_error(L);
     }
 }
@@ -218,7 +217,7 @@ void glintL_push_param_spec(lua_State *L, glintL_run *run, const char *name, int
     if (lua_istable(L, entry))
         read_limits(L, entry, spec, path, type);
     if (!is_allowed(L, spec, value))
-        glintL_refuse(L, value, path, push_allowed(L, spec));
+        glintL_refuse(L, value, path, glintL_push_allowed(L, spec));
     lua_pushvalue(L, value);
     lua_setfield(L, spec, "default");
     lua_pushvalue(L, value);

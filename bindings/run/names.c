@@ -58,7 +58,7 @@ bool glintL_name_is_special(const char *path)
 
 bool glintL_name_is_plain(const char *name, size_t length)
 {
-    bool good = length > 0 && length <= 200 && name[0] != '.';
+    bool good = length > 0 && length <= 200 && name[0] != '.' && name[0] != '-';
     for (size_t i = 0; good && i < length; i++)
         good = name[i] != '/' && (unsigned char)name[i] >= ' ' && name[i] != 0x7f;
     return good;

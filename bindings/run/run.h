@@ -130,7 +130,7 @@ glintL_film_kind glintL_film_kind_of(const char *path, bool apng);
 bool glintL_name_is_special(const char *path); ///< an existing pipe or device
 /// Returns whether an untrusted script may write a file with this name: no folder, not hidden.
 bool glintL_name_is_plain(const char *name, size_t length);
-#define GLINTL_PLAIN_NAME "plain file name (no folder, no leading '.', at most 200 bytes)"
+#define GLINTL_PLAIN_NAME "plain file name (no folder, no leading '.' or '-', at most 200 bytes)"
 
 // ---- derivatives.c ----
 
@@ -624,6 +624,8 @@ void glintL_set_kept_plan(lua_State *L, int index, glint_plan *plan);
 void glintL_push_param_spec(lua_State *L, glintL_run *run, const char *name, int entry);
 /// Pushes the list of all parameters: {name=, type=, default=, value=, min=, max=, choices=, doc=}.
 void glintL_push_params(lua_State *L);
+/// Pushes the allowed values of a parameter, for messages. spec: absolute index of its description.
+const char *glintL_push_allowed(lua_State *L, int spec);
 /// Pushes the message about a --set that matches no params table; or pushes nothing and returns false.
 bool glintL_push_unknown_set(lua_State *L);
 
@@ -632,6 +634,9 @@ bool glintL_push_unknown_set(lua_State *L);
 /// Writes the shortest text that reads back as the same number.
 void glintL_format_number(char out[32], double value);
 void glintL_json_string(FILE *out, const char *text);
+/// Writes text of `size` bytes before a zero byte, for people: control characters except newline and tab, and bytes that
+/// are not UTF-8, are shown escaped.
+void glintL_put_text(FILE *out, const char *text, size_t size);
 void glintL_json_number(FILE *out, double value); ///< null if it is not finite
 /// Prints a format that has only %s, a JSON string or null, and %g, a JSON number.
 __attribute__((format(printf, 2, 3))) void glintL_json(FILE *out, const char *format, ...);

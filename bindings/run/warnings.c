@@ -59,10 +59,13 @@ void glintL_forget_warnings(glintL_run *run)
 
 static void say(const glintL_run *run, const char *message)
 {
-    if (run->reporter.warn)
+    if (run->reporter.warn) {
         run->reporter.warn(run->reporter.context, message);
-    else
-        fprintf(stderr, "glint: warning: %s\n", message);
+    } else {
+        fputs("glint: warning: ", stderr);
+        glintL_put_text(stderr, message, strlen(message));
+        fputc('\n', stderr);
+    }
 }
 
 void glintL_run_warn(glintL_run *run, const char *format, ...)

@@ -97,6 +97,13 @@ static const char *header(const char *head, const char *name)
     return NULL;
 }
 
+// Returns whether a header appears more than once.
+static bool is_repeated(const char *head, const char *name)
+{
+    const char *first = header(head, name);
+    return first && header(first, name);
+}
+
 static bool is_own_name(const watch_server *server, const char *host)
 {
     const char *port = strchr(server->host, ':');
@@ -128,7 +135,11 @@ static bool take_order(watch_server *server, watch_client *c, const char *what, 
         if (!equals)
             return watch_client_say(c, "400 Bad Request");
         *equals = '\0';
-        if (!orders->set(orders->context, body, equals + 1))
+        char reason[256];
+        const watch_answer answer = orders->set(orders->context, body, equals + 1, reason, sizeof reason);
+        if (answer == WATCH_WRONG)
+            return watch_client_reply(c, "400 Bad Request", "text/plain; charset=utf-8", "", reason, strlen(reason));
+        if (answer == WATCH_UNKNOWN)
             return watch_client_say(c, "404 Not Found");
     } else if (strcmp(what, "reset") == 0) {
         orders->reset(orders->context);
@@ -143,6 +154,9 @@ static bool answer(watch_server *server, watch_client *c, char *body)
 {
     char *path = strchr(c->request, ' '), *end = path ? strpbrk(path + 1, " \r\n") : NULL;
     if (!path || !end || *end != ' ')
+        return watch_client_say(c, "400 Bad Request");
+    if (!header(c->request, "Host") || is_repeated(c->request, "Host") || is_repeated(c->request, "Origin") ||
+        is_repeated(c->request, "Content-Length"))
         return watch_client_say(c, "400 Bad Request");
     if (!is_own_page(server, c->request))
         return watch_client_say(c, "403 Forbidden");

@@ -1,5 +1,6 @@
 // Requests from the threads of glint watch to its main loop: a changed file, a frame to show, a parameter's value.
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,27 +103,43 @@ void watch_requests_know(watch_requests *requests, char *names)
     pthread_mutex_unlock(&requests->lock);
 }
 
-// The caller holds the lock.
-static bool is_name(const watch_requests *requests, const char *name)
+// Returns the rest of a parameter's line, after "="; NULL: there is no such parameter. The caller holds the lock.
+static const char *find_name(const watch_requests *requests, const char *name)
 {
     const size_t length = strlen(name);
     const char *at = length && !strchr(name, '\n') ? requests->names : NULL;
-    while (at && (at = strstr(at, name)) && !(at[-1] == '\n' && at[length] == '\n'))
+    while (at && (at = strstr(at, name)) && !(at[-1] == '\n' && at[length] == '='))
         at += length;
-    return at != NULL;
+    return at ? at + length + 1 : NULL;
 }
 
-static bool request_set(void *context, const char *name, const char *text)
+// Returns whether a text is a value of the type and range in the rest of a parameter's line.
+static bool is_value(const char *kind, const char *text)
+{
+    char *end;
+    if (*kind == 'b')
+        return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;
+    if (*kind == 's')
+        return true;
+    const double least = strtod(kind + 1, &end), most = strtod(end, &end), value = strtod(text, &end);
+    return end != text && !*end && isfinite(value) && value >= least && value <= most && (*kind == 'n' || value == floor(value));
+}
+
+static watch_answer request_set(void *context, const char *name, const char *text, char *reason, size_t size)
 {
     watch_requests *requests = context;
     pthread_mutex_lock(&requests->lock);
-    const bool is_known = is_name(requests, name);
-    if (is_known && put(&requests->overrides, &requests->override_count, name, text, false)) {
+    const char *kind = find_name(requests, name);
+    const watch_answer answer = !kind ? WATCH_UNKNOWN : is_value(kind, text) ? WATCH_SET : WATCH_WRONG;
+    if (answer == WATCH_WRONG) {
+        const char *expected = strchr(kind, '=') + 1;
+        snprintf(reason, size, "%s: %.*s expected, got '%s'", name, (int)strcspn(expected, "\n"), expected, text);
+    } else if (answer == WATCH_SET && put(&requests->overrides, &requests->override_count, name, text, false)) {
         requests->script = true;
         post(requests, false);
     }
     pthread_mutex_unlock(&requests->lock);
-    return is_known;
+    return answer;
 }
 
 static void request_reset(void *context)

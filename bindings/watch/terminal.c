@@ -221,11 +221,14 @@ void watch_terminal_draw(watch_terminal *terminal, const watch_picture *picture,
             draw_sixels(picture);
         else
             draw_blocks(terminal, picture);
-        fprintf(stderr, "\033[0m%s\033[J", line);
+        fputs("\033[0m", stderr);
+        glintL_put_text(stderr, line, strlen(line));
+        fputs("\033[J", stderr);
         fflush(stderr);
         setvbuf(stderr, NULL, _IONBF, 0);
     } else {
-        fprintf(stderr, "%s\n", line);
+        glintL_put_text(stderr, line, strlen(line));
+        fputc('\n', stderr);
     }
 }
 
@@ -233,7 +236,8 @@ void watch_terminal_error(watch_terminal *terminal, const char *message)
 {
     if (terminal->graphics != WATCH_TEXT) // the message replaces the picture, from its top
         begin(terminal);
-    fprintf(stderr, "%sglint: %serror:%s %s%s\n", terminal->graphics != WATCH_TEXT ? "\033[K" : "",
-            terminal->color ? "\033[1;31m" : "", terminal->color ? "\033[0m" : "", message,
-            terminal->graphics != WATCH_TEXT ? "\033[K" : "");
+    fprintf(stderr, "%sglint: %serror:%s ", terminal->graphics != WATCH_TEXT ? "\033[K" : "",
+            terminal->color ? "\033[1;31m" : "", terminal->color ? "\033[0m" : "");
+    glintL_put_text(stderr, message, strlen(message));
+    fputs(terminal->graphics != WATCH_TEXT ? "\033[K\n" : "\n", stderr);
 }

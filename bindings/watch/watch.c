@@ -4,6 +4,7 @@
 // 2, 4 ... samples follow. The last picture has full quality. Preview and full picture have renderers that live across
 // runs, so that results which a change does not affect are reused; the steps between have a renderer without reuse.
 #include <errno.h>
+#include <math.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -283,22 +284,33 @@ static void take_renderer(watcher *w, quality now)
     w->now = now;
 }
 
-// Prints the parameters as JSON. Returns their names, each between two line breaks.
+// Returns the number in a field of the table at `spec`; `missing` if there is none.
+static double number_or(lua_State *L, int spec, const char *name, double missing)
+{
+    const double number = lua_getfield(L, spec, name) == LUA_TNUMBER ? lua_tonumber(L, -1) : missing;
+    lua_pop(L, 1);
+    return number;
+}
+
+// Prints the parameters as JSON. Returns the list for watch_requests.
 static int params_protected(lua_State *L)
 {
-    luaL_Buffer names;
     cli_print_params(L, lua_touserdata(L, 1));
-    glintL_push_params(L);
-    luaL_buffinit(L, &names);
-    luaL_addchar(&names, '\n');
+    glintL_push_params(L); // 2
+    lua_pushliteral(L, "\n"); // 3: the list
     for (lua_Integer i = 1, count = luaL_len(L, 2); i <= count; i++) {
-        lua_rawgeti(L, 2, i);
-        lua_getfield(L, -1, "name");
-        lua_remove(L, -2);
-        luaL_addvalue(&names);
-        luaL_addchar(&names, '\n');
+        lua_rawgeti(L, 2, i); // 4
+        lua_getfield(L, 4, "name");
+        lua_getfield(L, 4, "type");
+        lua_getfield(L, 4, "whole");
+        const char *type = lua_tostring(L, 6);
+        char range[64];
+        snprintf(range, sizeof range, "%c%.17g %.17g", *type == 'n' && lua_toboolean(L, 7) ? 'w' : *type, number_or(L, 4, "min", -HUGE_VAL),
+                 number_or(L, 4, "max", HUGE_VAL));
+        lua_pushfstring(L, "%s%s=%s=%s\n", lua_tostring(L, 3), lua_tostring(L, 5), range, glintL_push_allowed(L, 4));
+        lua_replace(L, 3);
+        lua_settop(L, 3);
     }
-    luaL_pushresult(&names);
     return 1;
 }
 

@@ -64,11 +64,15 @@ size_t watch_files_count(watch_files *files);
 
 typedef struct watch_server watch_server;
 
+/// Whether a parameter was set.
+typedef enum watch_answer { WATCH_SET, WATCH_UNKNOWN, WATCH_WRONG } watch_answer;
+
 /// Requests from the page. Called in the server's thread; the texts are borrowed.
 typedef struct watch_orders {
     void *context;
     void (*frame)(void *context, int64_t frame);
-    bool (*set)(void *context, const char *name, const char *text); ///< false: the script has no such parameter
+    /// Sets a parameter. WATCH_UNKNOWN: the script has no such parameter. WATCH_WRONG: `reason` says what is expected
+    watch_answer (*set)(void *context, const char *name, const char *text, char *reason, size_t size);
     void (*reset)(void *context);
 } watch_orders;
 
@@ -106,7 +110,9 @@ typedef struct watch_requests {
     char changed[GLINTL_PATH_SIZE]; ///< a changed file; "": none
     double since_ms; ///< time of the first pending request
     int64_t wanted; ///< frame to show
-    char *names; ///< names of the script's parameters, each between two line breaks; owned. NULL: unknown
+    /// The script's parameters, a line each, after a line break: the name, "=", a letter for the type (n: number, w: whole
+    /// number, b: boolean, s: other), the least and the largest number, "=", and what is expected; owned. NULL: unknown
+    char *names;
     glintL_set *overrides; ///< owned with their texts; only for these names
     size_t override_count;
     atomic_bool supersedes; ///< the running script's result is no longer needed
@@ -118,7 +124,7 @@ bool watch_requests_open(watch_requests *requests, char message[GLINTL_MESSAGE_S
 void watch_requests_close(watch_requests *requests);
 void watch_requests_change(void *requests, const char *path); ///< callback for watch_files
 watch_orders watch_requests_orders(watch_requests *requests);
-/// Sets the names of the parameters that the page may set; takes over `names`.
+/// Sets the list of the parameters that the page may set; takes over `names`.
 void watch_requests_know(watch_requests *requests, char *names);
 typedef struct watch_request {
     bool run_again; ///< run the script; otherwise only another frame is shown

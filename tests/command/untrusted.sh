@@ -284,6 +284,73 @@ rm -r much
 [ $? -eq 1 ] && grep -q "File too large" err
 result $? "bytes of a file"
 
+# ---- Names that are options, and messages that control a terminal ----
+
+for name in -rf.png -x --checkpoint-action=exec=sh.png; do
+    printf '%s\n' 'local glint = require "glint"' 'local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }' \
+        "scene:render { width = 8, height = 8, output = '$name' }" >dash.lua
+    "$glint" --untrusted dash.lua -q >out 2>err
+    [ $? -eq 2 ] && grep -q "no leading '\.' or '-'.* expected, got '$name'" err && [ ! -e "./$name" ]
+    result $? "a picture named $name"
+    printf '%s\n' 'local glint = require "glint"' 'local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }' \
+        "scene:render { width = 8, height = 8, output = 'none' }:save('$name')" >dash.lua
+    "$glint" --untrusted dash.lua -q >out 2>err
+    [ $? -eq 2 ] && grep -q "no leading '\.' or '-'.* expected, got string \"$name\"" err && [ ! -e "./$name" ]
+    result $? "an image saved as $name"
+done
+
+printf -- '-- Help \033]52;c;aGVsbG8=\007 of it\n' >control.lua
+cat >>control.lua <<'END'
+local glint = require "glint"
+local P = glint.params { size = { 1, doc = "a\27[31m b\7" } }
+print("A\27]0;pwned\7\27[31mred\127", "caf\u{e9} \u{9b}31m \u{202e}x", "\x9b", 1, nil)
+if P.size > 1 then error("B\27]52;c;aGVsbG8=\7\nglint: error: fake\rglint: error: fake") end
+glint.scene { glint.sphere { center = { 0, 0, 0 }, radius = 1, name = "x\27[2J" } }:render { width = 8, height = 8, output = "ab.png" }
+END
+raw() { LC_ALL=C grep -qP '[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80\xae' "$@"; } # bytes that a terminal obeys
+for options in "--untrusted" "--untrusted --set size=2" "--untrusted --help" "--help" "--set size=2" "--untrusted -o none"; do
+    # shellcheck disable=SC2086
+    "$glint" control.lua $options >out 2>err
+    case $options in --set* | --help) files=err ;; *) files="out err" ;; esac # a trusted script may write what it likes
+    # shellcheck disable=SC2086
+    ! raw $files
+    result $? "no control characters with $options"
+done
+"$glint" control.lua --untrusted --set size=2 >out 2>err
+grep -qF 'A\x1b]0;pwned\x07\x1b[31mred\x7f	café \u009b31m \u202ex	\x9b	1	nil' out
+result $? "they are shown escaped"
+grep -qF 'B\x1b]52;c;aGVsbG8=\x07' err && [ "$(grep -c '^glint: error' err)" -eq 1 ]
+result $? "one error, whatever it says"
+"$glint" explain control.lua --untrusted >out 2>err && ! raw out err
+result $? "no control characters in a plan"
+"$glint" $'none\e[31m.lua' >out 2>err
+[ $? -eq 2 ] && grep -qF 'none\x1b[31m.lua' err
+result $? "names of files are shown escaped"
+
+# ---- The same pictures as without the sandbox ----
+
+mkdir same
+for path in "$root"/scripts/*.lua; do
+    grep -qE 'require *[("]* *"(glint\.|gr)|io\.|file *=|dofile|read_image' "$path" && continue
+    name=$(basename "$path" .lua)
+    "$glint" "$path" -f 1 --size 24x16 -q -o "same/$name.open.png" >out 2>err || continue
+    "$glint" "$path" -f 1 --size 24x16 -q --untrusted=60 -o "same/$name.closed.png" >out 2>err
+    for open in same/"$name".open*; do
+        cmp -s "$open" "${open/.open/.closed}"
+        result $? "$name: $(basename "$open")"
+    done
+done
+printf '%s\n' 'local glint = require "glint"' 'return glint.scene { ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 1 } }' >plain.lua
+"$glint" plain.lua -o open.png --size 16x16 2>open.err && "$glint" plain.lua --untrusted -o closed.png --size 16x16 2>closed.err &&
+    cmp open.png closed.png && grep -q "the scene has no camera" closed.err
+result $? "a scene without a camera"
+printf '%s\n' 'local glint = require "glint"' 'return glint.chart { x = { 0, 1 }, y = { 0, 1 } }' >chart.lua
+"$glint" chart.lua -o open.png --size 160x120 -q 2>open.err
+code=$?
+"$glint" chart.lua --untrusted -o closed.png --size 160x120 -q 2>closed.err
+[ $? -eq $code ] && cmp open.err closed.err && { [ $code -ne 0 ] || cmp open.png closed.png; }
+result $? "a chart alone"
+
 # ---- The sandbox, attacked by a process that runs arbitrary code ----
 
 mkdir walls

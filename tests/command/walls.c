@@ -60,6 +60,21 @@ static int reads_input(void)
     return read(STDIN_FILENO, &byte, 1) == 1 ? 0 : EBADF; // the input must be at its end immediately
 }
 
+// Returns 0 if a file can be mapped shared, to write to it without a call that is counted.
+static int maps_shared(int protection)
+{
+    const int file = open("pictures/own", O_RDWR);
+    if (file < 0 || ftruncate(file, 4096))
+        return file < 0 ? 0 : errno; // own files may be opened
+    void *bytes = mmap(NULL, 4096, protection, MAP_SHARED, file, 0);
+    const int code = bytes == MAP_FAILED ? errno : 0;
+    close(file);
+    return code;
+}
+
+static int maps_to_write(void) { return maps_shared(PROT_READ | PROT_WRITE); }
+static int maps_to_write_later(void) { return maps_shared(PROT_READ); }
+
 static int starts_program(void)
 {
     char *const nothing[] = { NULL };
@@ -150,7 +165,7 @@ static const struct attack {
     ATTACK(writes_script),  ATTACK(writes_beside),   ATTACK(cuts_by_opening),   ATTACK(cuts_script),
     ATTACK(cuts),           ATTACK(removes),         ATTACK(moves_in),          ATTACK(moves_out),
     ATTACK(links),          ATTACK(links_by_name),   ATTACK(makes_folder),      ATTACK(makes_pipe),
-    ATTACK(changes_mode),   ATTACK(uses_inherited),  ATTACK(reads_input),       ATTACK(starts_program),
+    ATTACK(changes_mode),   ATTACK(uses_inherited),  ATTACK(reads_input),       ATTACK(maps_to_write), ATTACK(maps_to_write_later),       ATTACK(starts_program),
     ATTACK(starts_process), ATTACK(signals_parent),  ATTACK(signals_thread),    ATTACK(traces),
     ATTACK(connects),       ATTACK(joins),           ATTACK(owns_signals),      ATTACK(copies),
     ATTACK(leases),         ATTACK(fakes_typing),    ATTACK(makes_memory_file), ATTACK(takes_memory),

@@ -219,8 +219,13 @@ turns" ""; do
     check "no parameter '$name'" is 404 "$(status POST "${path}set" "$name=1")"
 done
 check "none was kept" test -z "$(grep 'no such parameter' events)"
-ask POST "${path}set" shade=7 >/dev/null
-check "a value out of range is told" await "shade: number 0 .. 1 expected, got '7'" 1
+for value in 7 -1 nan NAN inf -inf 1e999 AAAA 0.5x ""; do
+    check "no value '$value'" is 400 "$(status POST "${path}set" "shade=$value")"
+    check "and why" grep -qF "shade: number 0 .. 1 expected, got '$value'" <(ask POST "${path}set" "shade=$value")
+done
+check "one name of this machine" is 400 "$(status GET "$path" "" "$host"$'\r\n'"Host: $host")"
+check "not another one beside it" is 400 "$(status GET "$path" "" "$host"$'\r\n'"hOST: evil.example")"
+check "one length" is 400 "$(status POST "${path}set" shade=0.25 "$host"$'\r\n'"Content-Length: 3")"
 ask POST "${path}reset" "" >/dev/null
 check "reset shows again" await '"index":5' 3
 
