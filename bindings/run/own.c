@@ -54,7 +54,7 @@ static int vector(lua_State *L)
 // is_object(value): returns whether a value is an object of glint, and not a vector.
 static int is_object(lua_State *L)
 {
-    lua_pushboolean(L, lua_isuserdata(L, 1) && !glintL_to_vector(L, 1));
+    lua_pushboolean(L, lua_isuserdata(L, 1) && !glintL_to_vector(L, 1) && luaL_getmetafield(L, 1, "__index") != LUA_TNIL);
     return 1;
 }
 

@@ -96,6 +96,11 @@ static int add_callers(lua_State *L)
 int glintL_message_handler(lua_State *L)
 {
     if (lua_type(L, 1) == LUA_TSTRING) {
+        static const char stripped[] = "?:-1: "; // a place in one of glint's own modules
+        if (strncmp(lua_tostring(L, 1), stripped, sizeof stripped - 1) == 0) {
+            lua_pushstring(L, lua_tostring(L, 1) + sizeof stripped - 1);
+            lua_replace(L, 1);
+        }
         const char *cure = glintL_push_lua_cure(L, lua_tostring(L, 1));
         if (cure && !strstr(lua_tostring(L, 1), cure)) {
             lua_pushfstring(L, "%s%s", lua_tostring(L, 1), cure);

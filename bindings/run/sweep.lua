@@ -28,7 +28,7 @@ local function check_axis(axis, path)
     the.refuse(axis, path, '{ object, "field", { values } }')
   end
   local object, field, values = rawget(axis, 1), rawget(axis, 2), rawget(axis, 3)
-  if type(object) ~= "userdata" and type(object) ~= "table" then the.refuse(object, path .. "[1]", "object") end
+  if type(object) ~= "table" and not the.is_object(object) then the.refuse(object, path .. "[1]", "object") end
   if type(field) ~= "string" then the.refuse(field, path .. "[2]", "name of a field") end
   local _ = object[field] -- raises if there is no such field
   if type(values) ~= "table" then the.refuse(values, path .. "[3]", "list of values") end

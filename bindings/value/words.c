@@ -57,6 +57,7 @@ const char *glintL_nearer(const char *name, const char *best, const char *candid
 // Names in other programs, and their equivalents here. Several rows may have the same name: the first equivalent that
 // the object has applies.
 static const char *const MEANINGS[][2] = {
+    { "falloff", "attenuation" },
     { "color", "diffuse" },
     { "colour", "diffuse" },
     { "kd", "diffuse" },

@@ -364,7 +364,7 @@ end
 --- gives up its arrays: call it once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
-  if not self.data then error("particles: the spheres of this set have already been used", 2) end
+  if not self.data then error("particles: the spheres of this set have already been used", 0) end
   if self.count == 0 then
     self.data = nil
     return glint.group {}
