@@ -87,7 +87,7 @@ struct cli_options {
     double gain, label_size; ///< for sheet; 0: not given
     bool transparent; ///< the background of sheet is transparent
     int64_t frame; ///< number of the frame that explain describes
-    double fail, warn; ///< limits for compare
+    double fail, warn, tolerance; ///< limits for compare; negative: not given
     cli_sweep *sweeps;
     size_t sweep_count;
     glintL_request request; ///< the run takes it over
@@ -132,7 +132,7 @@ struct cli_option {
     bool repeats; ///< the option may be given several times
     const char *group; ///< heading in --help for this option and those after it
 };
-#define CLI_OPTION_COUNT 73
+#define CLI_OPTION_COUNT 74
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 bool cli_option_may_lack(const cli_option *option); ///< returns whether the option's value is optional
 /// Pushes a table of the options that were given and whose values are flags, texts or numbers.

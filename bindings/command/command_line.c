@@ -344,7 +344,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     options->request.repeat = 1;
     options->frame = 1;
     options->http_port = -1;
-    options->fail = options->warn = -1;
+    options->fail = options->warn = options->tolerance = -1;
     int words = argc;
     for (int i = 1; i < words; i++) {
         if (strcmp(argv[i], "--") == 0)

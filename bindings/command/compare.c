@@ -65,7 +65,11 @@ int cli_compare(cli_options *options, cli_output *output, glintL_run *run)
     glint_error error = { .message = "" };
     if (options->argument_count != 2)
         return cli_report_error(output, 0, GLINTL_EXIT_USAGE, "compare: two files expected");
+    if (options->fail >= 0 && options->tolerance >= 0)
+        return cli_report_error(output, 0, GLINTL_EXIT_USAGE, "--tolerance: the same limit as --fail, in steps of 8 bits; give one of them");
     desc.fail = options->fail >= 0 ? options->fail : desc.fail;
+    if (options->tolerance >= 0)
+        desc.fail = options->tolerance / 255 + 1e-9; // differences of 8-bit values are rounded
     desc.warn = options->warn >= 0 ? options->warn : desc.warn;
     char **files = options->arguments;
     verdict found = judge(glint_compare_files(files[0], files[1], &desc, &result, &error), &result);

@@ -376,6 +376,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       .expected = "number >= 0", .group = "compare" },
     { "warn", 0, "X", CLI_COMPARE, read_real, .help = "difference above which it warns", AT(warn), WITHIN(0, DBL_MAX),
       .expected = "number >= 0" },
+    { "tolerance", 0, "N", CLI_COMPARE, read_real, .help = "instead of --fail: in steps of 8 bits, 1 of 255", AT(tolerance),
+      WITHIN(0, 255), .expected = "number from 0 to 255" },
     { "json", 0, NULL, ALL, read_flag, .help = "print events on stdout as JSON, one per line", AT(json), .group = "report" },
     { "quiet", 'q', NULL, ALL, read_flag, .help = "do not report frames", AT(quiet) },
     { "warnings", 0, "show|error|none", CLI_RENDER | CLI_WATCH, read_warnings, .help = "what a warning does" },

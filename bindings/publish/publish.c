@@ -260,7 +260,7 @@ int cli_publish(cli_options *options, cli_output *output, glintL_run *run)
     if (run->exit_code)
         cli_report_error(output, 0, run->exit_code, run->message);
     else
-        cli_reporter(output).figure(output, "page", options->output, 1);
+        cli_reporter(output).figure(output, "page", options->output, run->total > 0 ? run->total : run->count);
     return run->exit_code;
 }
 

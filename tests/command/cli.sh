@@ -871,6 +871,23 @@ comparing() {
     check "compare says a line once" test -z "$(sort out | uniq -d)"
     check "and how many pixels" test "$(grep -c 'pixels (' out)" -eq 1
     exits 1 "compare warn" compare ten_0001.png ten_0002.png --fail 1 --warn 0.001
+    cat >dark.lua <<'END'
+local glint = require "glint"
+for _, value in ipairs { 99, 100, 102 } do
+  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = value / 255 }
+  scene:render { width = 4, height = 4, transfer = "linear", output = ("dark_%d.png"):format(value) }
+end
+END
+    run dark.lua
+    exits 2 "compare: one step apart" compare dark_99.png dark_100.png
+    exits 2 "compare: half a step allowed" compare dark_99.png dark_100.png --tolerance 0.5
+    exits 1 "compare: one step allowed" compare dark_99.png dark_100.png --tolerance 1
+    exits 2 "compare: of three steps, two allowed" compare dark_99.png dark_102.png --tolerance 2
+    exits 1 "compare: three steps allowed" compare dark_99.png dark_102.png --tolerance 3
+    exits 0 "compare: nothing to tolerate" compare dark_99.png dark_99.png --tolerance 3
+    exits 2 "compare: two limits" compare dark_99.png dark_100.png --tolerance 3 --fail 1
+    says "compare: which limits" "--tolerance: the same limit as --fail, in steps of 8 bits; give one of them"
+    exits 2 "compare: a tolerance below 0" compare dark_99.png dark_100.png --tolerance -1
     exits 3 "compare size" compare ten_0001.png one.png
     exits 4 "compare no file" compare ten_0001.png nothing.png
     exits 4 "compare no picture" compare ten_0001.png ten.lua

@@ -33,6 +33,10 @@ cd ..
 has far.html '"same":{"../data/shade.txt":"data/shade.txt"}'
 has far.html 'controls="size"'
 
+sed 's/width = 8/frames = 48, width = 8/' scene.lua >film.lua
+exits 0 "a page of a film" publish film.lua -o film.html
+says "a page of a film" 'page of 48 frames'
+
 # ---- Refused input ----
 
 exits 2 "no page" publish scene.lua
