@@ -56,8 +56,9 @@ static double shadow_beyond(const glint_ray_counts *rays)
 static void print_beyond(FILE *out, const glint_ray_counts *rays)
 {
     const double count = shadow_beyond(rays);
-    if (count > 0)
-        fprintf(out, "  shadow     %.0f more at most where these rays hit first\n", count);
+    if (count == 0)
+        return;
+    fprintf(out, "  shadow     %.0f more at most where these rays hit first\n", count);
     if (count >= MANY * (double)rays->primary)
         fprintf(out, "             for each sample of a pixel: %.0f rays beyond the surface x %" PRIu64 " shadow rays. Fewer by reflection_samples,\n"
                      "             indirect = { samples = ... }, or samples of a lamp\n",

@@ -171,6 +171,7 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_builder_input(NULL, 0, NULL, NULL));
     INVALID(glint_builder_op(NULL, 0, NULL, NULL, NULL));
     INVALID(glint_builder_texel(NULL, NULL, 0, 0, 0, NULL, NULL));
+    INVALID(glint_builder_texel_by_axis(NULL, NULL, 0, 0, NULL, NULL, NULL));
     NOTHING(glint_builder_is_number(NULL, 0, NULL));
     NOTHING(glint_builder_length(NULL));
     INVALID(glint_builder_finish(NULL, NULL, 0, NULL, NULL));
