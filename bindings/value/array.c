@@ -4,11 +4,14 @@
 
 #include "bindings/value/array.h"
 
+#define NUMBERS_MAX ((uint64_t)1 << 36) // half a terabyte: a request for more is a mistake
+
 glintL_array *glintL_to_array(lua_State *L, int index) { return luaL_testudata(L, index, GLINTL_ARRAY); }
 
 glintL_array *glintL_push_array(lua_State *L, size_t count, size_t width, bool is_whole)
 {
-    if (count > (SIZE_MAX / 2 - sizeof(glintL_array)) / sizeof(double) / width)
+    const uint64_t space = (SIZE_MAX / 2 - sizeof(glintL_array)) / sizeof(double);
+    if (count > (space < NUMBERS_MAX ? space : NUMBERS_MAX) / width)
         glintL_error(L, "array: out of memory");
     luaL_checkstack(L, 2, "array");
     glintL_array *a = lua_newuserdatauv(L, sizeof *a + count * width * sizeof *a->numbers, 0);
