@@ -377,7 +377,7 @@ check: ## every test; T=name runs those whose name has it
 check-run: tests
 	@T="$(T)" $(RUNNER) make:lint make:check-headers make:check-symbols make:check-layers $(TEST_BIN) $(HARD_BIN) $(SCRIPTED)
 
-# Bits, in a few minutes: kernels against the reference, goldens, threads, and the interface in Lua.
+# Bits, in a few minutes: kernels against the reference, the BVH, images, goldens, and the interface in Lua.
 QUICK := $(filter $(BUILD)/tests/engine/test_stages_% %/test_bvh %/test_image,$(TEST_BIN)) tests/command/golden.sh tests/lua/test_api.lua
 .PHONY: quick quick-run
 quick: ## what most mistakes break, in a few minutes: kernels against the reference, goldens, the interface in Lua
