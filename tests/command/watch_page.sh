@@ -106,8 +106,8 @@ run "{ const s = document.querySelector('[name=shade]'); s.value = 0.9; s.dispat
 check "the slider renders" becomes "get('picture').src !== '$before' && state.params.find(p => p.name === 'shade').value === 0.9"
 before=$(now "get('picture').src")
 run "order('set', 'shade=7')" # which the slider itself does not let through
-check "a parameter out of range is an error" becomes "!get('error').hidden && get('error').textContent.includes('shade: number 0 .. 1 expected, got')"
-check "over the last good picture" becomes "get('picture').src === '$before' && document.images[0].naturalWidth === 640"
+check "a parameter out of range is refused with the reason" becomes "get('note').textContent.startsWith('shade: number 0 .. 1 expected, got ')"
+check "and the picture stays" becomes "get('error').hidden && get('picture').src === '$before' && document.images[0].naturalWidth === 640"
 check "whose controls stay" becomes "document.querySelector('[name=shade]').type === 'range' && document.querySelector('[name=model]')"
 run "{ const s = document.querySelector('[name=shade]'); s.value = 0.3; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change')); }"
 check "the slider puts it right" becomes "get('error').hidden && get('picture').src !== '$before' && state.params.find(p => p.name === 'shade').value === 0.3"
