@@ -291,6 +291,8 @@ int cli_picture_text(lua_State *L); ///< text(picture, keyword): returns a text 
 // ---- signals.c ----
 
 void cli_catch_signals(glintL_run *run);
+/// Sets whether system calls continue after a signal, so that a line of data is written whole. Initially they do not.
+void cli_restart_calls(bool restarts);
 /// For a command without a run: after this a signal removes the drafts and ends the process.
 void cli_leave_by_signals(void);
 void cli_release_signals(void);

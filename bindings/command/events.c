@@ -13,8 +13,11 @@
 void cli_end_line(cli_output *output)
 {
     fputc('\n', output->data);
+    cli_restart_calls(true);
     errno = 0;
-    if (fflush(output->data) == 0 || output->data_failed)
+    const bool good = fflush(output->data) == 0;
+    cli_restart_calls(false);
+    if (good || output->data_failed)
         return;
     output->data_failed = true;
     output->data_errno = errno;

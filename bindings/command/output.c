@@ -7,6 +7,8 @@
 
 #include "bindings/command/cli.h"
 
+#define LINE_BUFFER 65536 // bytes: cli_end_line writes a line of data at once
+
 static bool wants_color(void)
 {
     const char *no_color = getenv("NO_COLOR"), *term = getenv("TERM");
@@ -31,6 +33,7 @@ bool cli_output_open(cli_output *output, const cli_options *options)
         return false;
     }
     setvbuf(stdout, NULL, _IOLBF, 0);
+    setvbuf(output->data, NULL, _IOFBF, LINE_BUFFER);
     return true;
 }
 

@@ -39,29 +39,41 @@ static void stop(int number)
 
 static void ignore(int number) { (void)number; }
 
-static void handle(int number, void (*handler)(int))
+static void handle(int number, void (*handler)(int), int flags)
 {
     struct sigaction action;
     memset(&action, 0, sizeof action);
     action.sa_handler = handler;
-    action.sa_flags = SA_RESTART;
+    action.sa_flags = flags;
     sigemptyset(&action.sa_mask);
     sigaction(number, &action, NULL);
 }
 
-// Installs the handler. SIGHUP stays ignored if it was ignored before, as under nohup.
+// Installs the handler. SIGHUP stays ignored if it was ignored before, as under nohup. The signals interrupt system calls:
+// the script may wait for a pipe that nobody opens.
 static void handle_all(void (*handler)(int))
 {
-    handle(SIGINT, handler);
-    handle(SIGTERM, handler);
+    handle(SIGINT, handler, 0);
+    handle(SIGTERM, handler, 0);
     if (signal(SIGHUP, SIG_DFL) == SIG_IGN)
         signal(SIGHUP, SIG_IGN);
     else
-        handle(SIGHUP, handler);
+        handle(SIGHUP, handler, 0);
     // A failing write reports its error. The signals get handlers, because programs that the script starts would
     // inherit SIG_IGN.
-    handle(SIGPIPE, ignore);
-    handle(SIGXFSZ, ignore);
+    handle(SIGPIPE, ignore, SA_RESTART);
+    handle(SIGXFSZ, ignore, SA_RESTART);
+}
+
+void cli_restart_calls(bool restarts)
+{
+    static const int numbers[] = { SIGINT, SIGTERM, SIGHUP };
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction action;
+        sigaction(numbers[i], NULL, &action);
+        action.sa_flags = restarts ? action.sa_flags | SA_RESTART : action.sa_flags & ~SA_RESTART;
+        sigaction(numbers[i], &action, NULL);
+    }
 }
 
 void cli_catch_signals(glintL_run *run)

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include "bindings/run/run.h"
+#include "bindings/run/system.h"
 
 #ifdef GLINT_HAVE_ZSTD
 #include <zstd.h>
@@ -126,6 +127,8 @@ static int unpack(lua_State *L)
     const int method = luaL_checkoption(L, 2, NULL, methods);
     if (glintL_get_run(L)->request.is_untrusted)
         return glintL_error(L, "an untrusted script reads no files");
+    if (glintL_other_kind(path))
+        return glintL_error(L, "%s: a file expected, got a %s", path, glintL_other_kind(path));
     packed *p = lua_newuserdatauv(L, sizeof *p, 0);
     memset(p, 0, sizeof *p);
     luaL_setmetatable(L, PACKED);

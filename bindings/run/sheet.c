@@ -5,6 +5,7 @@
 
 #include "bindings/run/carried.h"
 #include "bindings/run/sheet.h"
+#include "bindings/run/system.h"
 
 #define PICTURE "glint.sheet picture"
 #define PIECE 24576 // bytes of a file; a multiple of three, so that only the last piece of base64 is padded
@@ -44,7 +45,12 @@ static int read_picture(lua_State *L)
     const glint_status status = glint_picture_read(luaL_checkstring(L, 1), false, picture, &error);
     if (status) {
         lua_pushnil(L);
-        return 1 + push_outcome(L, status, &error);
+        push_outcome(L, status, &error);
+        if (glintL_other_kind(lua_tostring(L, 1))) {
+            lua_pushinteger(L, GLINTL_EXIT_USAGE);
+            lua_replace(L, -3);
+        }
+        return 3;
     }
     lua_setfield(L, 2, "picture");
     glintL_set_whole(L, "width", glint_picture_width(*picture));

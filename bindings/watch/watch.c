@@ -8,7 +8,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
@@ -539,10 +538,11 @@ int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
     watcher w = { .options = options, .output = output, .run = run };
     char message[GLINTL_MESSAGE_SIZE];
     watch_request request = { .run_again = true };
-    struct stat info;
-    const bool is_folder = stat(options->script, &info) == 0 && S_ISDIR(info.st_mode);
-    if (is_folder || access(options->script, R_OK) != 0) {
-        snprintf(message, sizeof message, "%.900s: %s", options->script, strerror(is_folder ? EISDIR : errno));
+    const char *other = glintL_other_kind(options->script);
+    const bool is_folder = other && strcmp(other, "folder") == 0;
+    if (other || access(options->script, R_OK) != 0) {
+        snprintf(message, sizeof message, "%.900s: %s%s", options->script, other && !is_folder ? "a script expected, got a " : "",
+                 is_folder ? strerror(EISDIR) : other ? other : strerror(errno));
         return cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
     }
     bool good = open_watcher(&w, message);

@@ -54,6 +54,8 @@ glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_
         // O_NONBLOCK: does not wait for a pipe's writer
         opened = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
     while (opened < 0 && errno == EINTR);
+    if (opened < 0 && errno == ENXIO && stat(path, &info) == 0)
+        return check_kind(path, info.st_mode, error); // a socket
     if (opened < 0)
         return glint_file_fail(error, path, errno);
     glint_status status =
@@ -65,4 +67,14 @@ glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_
     *file = opened;
     *size = (uint64_t)info.st_size;
     return GLINT_OK;
+}
+
+glint_status glint_check_file(const char *path, glint_error *error)
+{
+    int file;
+    uint64_t size;
+    glint_status status = glint_open_file(path, &file, &size, error);
+    if (!status)
+        close(file);
+    return status;
 }

@@ -11,4 +11,7 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code);
 /// GLINT_ERR_IO at once, because it may have no end or block its reader.
 glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_error *error);
 
+/// Returns GLINT_OK if glint_open_file can open the file: for libraries that open a path themselves.
+glint_status glint_check_file(const char *path, glint_error *error);
+
 #endif

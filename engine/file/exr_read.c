@@ -1,4 +1,5 @@
 /// Reads the passes that relighting needs from an .exr: the picture and the light passes.
+#include "engine/base/open.h"
 #include "engine/base/status.h"
 #include "engine/film/relight.h"
 
@@ -133,11 +134,14 @@ glint_status glint_lights_read(const char *path, glint_image **out, glint_error 
     exr_context_initializer_t how = glint_exr_reader();
     exr_input file = { .image = NULL };
     glint_error inner;
+    glint_status status = glint_check_file(path, error);
+    if (status)
+        return status;
     const exr_result_t opened = exr_start_read(&file.context, path, &how);
-    glint_status status = opened == EXR_ERR_FILE_ACCESS     ? glint_fail(&inner, GLINT_ERR_IO, "it cannot be read")
-                          : opened == EXR_ERR_OUT_OF_MEMORY ? glint_fail_nomem(&inner)
-                          : opened ? glint_fail(&inner, GLINT_ERR_FORMAT, "an OpenEXR file expected")
-                                   : read_part(&file, &inner);
+    status = opened == EXR_ERR_FILE_ACCESS     ? glint_fail(&inner, GLINT_ERR_IO, "it cannot be read")
+             : opened == EXR_ERR_OUT_OF_MEMORY ? glint_fail_nomem(&inner)
+             : opened                          ? glint_fail(&inner, GLINT_ERR_FORMAT, "an OpenEXR file expected")
+                                               : read_part(&file, &inner);
     if (!opened)
         exr_finish(&file.context);
     if (status) {

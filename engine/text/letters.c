@@ -1,5 +1,6 @@
 #include "engine/text/letters.h"
 
+#include "engine/base/open.h"
 #include "engine/base/status.h"
 #include "engine/text/font.h"
 
@@ -70,7 +71,7 @@ static const char *const font_paths[] = {
 /// Opens the font at a path. False: there is none.
 static bool open_path(glint_letters *letters, const char *path)
 {
-    if (FT_New_Face(letters->library, path, 0, &letters->face))
+    if (glint_check_file(path, NULL) || FT_New_Face(letters->library, path, 0, &letters->face))
         return false;
     if (FT_IS_SCALABLE(letters->face)) {
         letters->path = note_lost(&letters->memory, strdup(path));

@@ -794,18 +794,15 @@ signals() {
         signalled "SIGINT in a loop that catches errors" INT 130 stubborn.lua
         ;;
     esac
-    # A script that waits inside C: the first signal takes effect when the wait ends, the second ends the process.
+    # A script that waits for a pipe inside C ends by the first signal, whether or not the pipe has a writer.
     mkfifo waits
-    echo 'io.open "waits"' >waiting.lua
-    "$GLINT" waiting.lua -o none >out 2>err </dev/null &
-    local waiting=$!
-    sleep 0.5
-    kill -s TERM $waiting
-    sleep 0.2
-    kill -s TERM $waiting
-    wait $waiting
-    check "a second signal ends what waits for a pipe" test $? -eq 143
-    rm waits waiting.lua
+    exec 9<>waits
+    echo 'while true do io.open("waits"):read(1) end' >reading.lua
+    signalled "SIGTERM while reading a pipe" TERM 143 reading.lua
+    exec 9>&-
+    echo 'while true do io.open "waits" end' >waiting.lua
+    signalled "SIGTERM while waiting for a pipe" TERM 143 waiting.lua
+    rm waits reading.lua waiting.lua
     local begin=$SECONDS
     "$GLINT" slow.lua -o 'many%d.png' --size 60x40 --samples 1 >out 2>err </dev/null &
     local pid=$!
