@@ -2030,6 +2030,7 @@ typedef struct glint_rows_desc {
     bool skips; ///< lines that are empty or begin with # are not rows
     const glint_column *columns; ///< in the order of their fields
     size_t column_count; ///< number of columns
+    int threads; ///< 1 .. 1024 threads that read parts of a long text; 0: one per processor
 } glint_rows_desc;
 
 /// Reads up to `most` rows of a text, one per line. It stops at the first line that does not have the expected fields,

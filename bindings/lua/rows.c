@@ -1,7 +1,7 @@
 // glint._row_reader: reads rows of text into arrays. Only for scripts/lib.
 #include <string.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/run/run.h"
 
 #define READER "glint.rows"
 #define COLUMNS_MAX 64
@@ -66,7 +66,7 @@ static int new_reader(lua_State *L)
     const char *separator = lua_tostring(L, -1);
     r->desc = (glint_rows_desc) { .separator = (char)(separator && *separator != ' ' ? *separator : 0),
                                   .field_count = (size_t)field_of(L, 1, "fields"), .skips = flag_of(L, 1, "skips"),
-                                  .columns = r->columns };
+                                  .columns = r->columns, .threads = glintL_get_run(L)->request.threads };
     lua_getfield(L, 1, "columns");
     luaL_checktype(L, -1, LUA_TTABLE);
     for (lua_Integer i = 1; lua_rawgeti(L, -1, i) != LUA_TNIL; i++, lua_pop(L, 1))
@@ -102,7 +102,7 @@ static size_t count_lines(const char *text, size_t length, size_t most)
 
 // read(text, at, most): returns the position after the rows, their number, the number of lines, and an array for each
 // column. At most `most` rows.
-static int read(lua_State *L)
+static int read_rows(lua_State *L)
 {
     size_t length, used, lines;
     reader *r = luaL_checkudata(L, 1, READER);
@@ -132,7 +132,7 @@ static int read(lua_State *L)
 
 void glintL_open_rows(lua_State *L)
 {
-    static const luaL_Reg methods[] = { { "learn", learn }, { "read", read }, { NULL, NULL } };
+    static const luaL_Reg methods[] = { { "learn", learn }, { "read", read_rows }, { NULL, NULL } };
     luaL_newmetatable(L, READER);
     glintL_set_function(L, "__gc", close_reader);
     luaL_newlib(L, methods);

@@ -1,10 +1,13 @@
 /// Reads rows of numbers and words from text.
-#include "engine/base/status.h"
+#include "engine/base/pool.h"
 #include "engine/data/decimal.h"
 #include "engine/data/words.h"
 
 #include <math.h>
 #include <string.h>
+
+#define PARTS_MAX 16
+#define PART_BYTES ((size_t)1 << 17) ///< less text is not worth a thread
 
 /// A position in a line. `end` is the position of its newline.
 typedef struct cursor {
@@ -139,22 +142,86 @@ static bool is_skipped(const char *at, const char *end)
     return at == end || *at == '#';
 }
 
+/// The lines of one worker. Its first row is row `first` of the columns, the number of lines before it.
+typedef struct part {
+    const char *at, *end; ///< the text that has not been read
+    size_t first, rows, lines;
+} part;
+
+typedef struct reading {
+    const glint_rows_desc *desc;
+    size_t most;
+    part parts[PARTS_MAX];
+} reading;
+
+static void read_part(void *context, size_t index, int worker)
+{
+    reading *r = context;
+    part *p = &r->parts[index];
+    (void)worker;
+    for (const char *newline; p->at < p->end && p->first + p->rows < r->most; p->lines++, p->at = newline + 1) {
+        newline = memchr(p->at, '\n', (size_t)(p->end - p->at));
+        if (!newline)
+            break;
+        if (r->desc->skips && is_skipped(p->at, newline))
+            continue;
+        if (!read_row(r->desc, (cursor) { p->at, newline }, p->first + p->rows))
+            break;
+        p->rows++;
+    }
+}
+
+/// Splits the text after ends of lines. Returns the number of parts.
+static size_t split(reading *r, const char *text, size_t length, size_t count)
+{
+    const char *at = text, *const end = text + length;
+    size_t line = 0, i = 0;
+    for (; i + 1 < count && line < r->most; i++) {
+        part *p = &r->parts[i];
+        *p = (part) { .at = at, .first = line };
+        for (const char *to = text + length / count * (i + 1); at < to; line++) {
+            const char *newline = memchr(at, '\n', (size_t)(end - at));
+            at = newline ? newline + 1 : end;
+        }
+        p->end = at;
+    }
+    if (line < r->most)
+        r->parts[i++] = (part) { .at = at, .end = end, .first = line };
+    return i;
+}
+
+/// Moves the rows of a part in all columns to row `to`, after skipped lines.
+static void move_rows(const glint_rows_desc *desc, const part *p, size_t to)
+{
+    for (const glint_column *column = desc->columns; column < desc->columns + desc->column_count; column++) {
+        if (column->kind == GLINT_COLUMN_WORD && column->indices)
+            memmove(column->indices + to, column->indices + p->first, p->rows * sizeof *column->indices);
+        else if (column->kind != GLINT_COLUMN_WORD && column->numbers)
+            memmove(column->numbers + to, column->numbers + p->first, p->rows * sizeof *column->numbers);
+    }
+}
+
 size_t glint_rows_read(const glint_rows_desc *desc, const char *text, size_t length, size_t most, size_t *used,
                        size_t *lines)
 {
-    const char *at = text, *const end = text + length;
-    size_t rows = 0;
-    for (*lines = 0; rows < most; ++*lines) {
-        const char *newline = at < end ? memchr(at, '\n', (size_t)(end - at)) : NULL;
-        if (!newline)
+    reading r = { .desc = desc, .most = most };
+    glint_pool *pool = NULL;
+    const size_t threads = (size_t)(desc->threads ? desc->threads : glint_pool_processors());
+    size_t rows = 0, parts = threads < PARTS_MAX ? threads : PARTS_MAX;
+    parts = split(&r, text, length, parts < length / PART_BYTES ? parts : length / PART_BYTES);
+    if (parts > 1)
+        glint_pool_create((int)parts, &pool, NULL); // without a pool, this thread reads all parts
+    glint_run_items(pool, parts, read_part, &r);
+    glint_pool_destroy(pool);
+    *used = *lines = 0;
+    for (part *p = r.parts; p < r.parts + parts; p++) {
+        if (rows != p->first)
+            move_rows(desc, p, rows);
+        rows += p->rows;
+        *lines += p->lines;
+        *used = (size_t)(p->at - text);
+        if (p->at != p->end)
             break;
-        if (!desc->skips || !is_skipped(at, newline)) {
-            if (!read_row(desc, (cursor) { at, newline }, rows))
-                break;
-            rows++;
-        }
-        at = newline + 1;
     }
-    *used = (size_t)(at - text);
     return rows;
 }

@@ -10,7 +10,7 @@ source.__index = source
 
 local LONGEST = 40 -- characters of a line shown in an error
 local LINE_MAX = 1 << 20 -- bytes
-local BLOCK = 1 << 18 -- bytes read at once
+local BLOCK = 1 << 20 -- bytes read at once
 
 -- Formats of other programs that no reader here accepts: by a file's extension, and by its first bytes.
 local ENDINGS = {
