@@ -1,13 +1,18 @@
 // The glint command.
+#include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
 #include "bindings/run/film.h"
 #include "bindings/run/system.h"
 #include "bindings/command/untrusted.h"
+
+#define STACK_LEAST ((rlim_t)80 << 10) // bytes for the loader and the libraries
+#define STACK_ENOUGH ((rlim_t)1 << 20) // bytes; the deepest recursion that Lua allows takes half
 
 // For a script that calls os.exit, which ends the process inside the run: finished pictures are still written.
 static cli_output *open_output;
@@ -81,7 +86,7 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
     return run_scripted(options, output, signal_number);
 }
 
-int main(int argc, char **argv)
+static int run_program(int argc, char **argv)
 {
     cli_options options;
     cli_output output;
@@ -102,4 +107,54 @@ int main(int argc, char **argv)
         raise(signal_number);
     }
     return code ? code : close_code;
+}
+
+// ---- Small stacks ----
+
+typedef struct program {
+    int argc;
+    char **argv;
+    sigset_t mask;
+    int code;
+} program;
+
+static void *run_in_thread(void *context)
+{
+    program *p = context;
+    pthread_sigmask(SIG_SETMASK, &p->mask, NULL);
+    p->code = run_program(p->argc, p->argv);
+    return NULL;
+}
+
+// Runs the program in a thread with a larger stack, also for the threads that it starts. That thread handles the signals.
+static int run_with_stack(program *p)
+{
+    sigset_t all;
+    pthread_attr_t how;
+    pthread_t thread;
+    sigfillset(&all);
+    bool good = pthread_attr_init(&how) == 0 && pthread_attr_setstacksize(&how, STACK_ENOUGH) == 0;
+#if defined(__linux__) && defined(_GNU_SOURCE)
+    good = good && pthread_setattr_default_np(&how) == 0;
+#endif
+    pthread_sigmask(SIG_SETMASK, &all, &p->mask);
+    if (!good || pthread_create(&thread, &how, run_in_thread, p) != 0 || pthread_join(thread, NULL) != 0) {
+        fputs("glint: error: out of memory for a stack\n", stderr);
+        return GLINTL_EXIT_FAILED;
+    }
+    return p->code;
+}
+
+int main(int argc, char **argv)
+{
+    struct rlimit stack;
+    if (getrlimit(RLIMIT_STACK, &stack) != 0 || stack.rlim_cur >= STACK_ENOUGH)
+        return run_program(argc, argv);
+    if (stack.rlim_cur < STACK_LEAST) {
+        fprintf(stderr, "glint: error: the stack is limited to %d KiB; glint needs %d KiB (ulimit -s %d)\n",
+                (int)(stack.rlim_cur >> 10), (int)(STACK_LEAST >> 10), (int)(STACK_LEAST >> 10));
+        return GLINTL_EXIT_FAILED;
+    }
+    program p = { .argc = argc, .argv = argv };
+    return run_with_stack(&p);
 }

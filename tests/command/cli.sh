@@ -898,6 +898,30 @@ END
 
 # Two numbers of a pattern change separately and together, and the camera moves away and returns. Results cached while
 # one number changed are used again after memory was too small for results with two changing numbers.
+little_stack() {
+    [[ ${PRELOAD:-}$build = *san* ]] && { echo "skip: a sanitizer needs a larger stack"; return; }
+    # The deepest recursion that Lua allows in C.
+    echo 'local function deep(s) return (s:gsub(".", deep)) end
+assert(select(2, pcall(deep, "a")):find "stack overflow")
+os.exit(7)' >deep.lua
+    (ulimit -s 64 && exec "$GLINT" deep.lua >out 2>err)
+    check "64 KiB of stack is an error" test $? -eq 1
+    says "a small stack" "the stack is limited to 64 KiB; glint needs 80 KiB .ulimit -s 80."
+    local kib
+    for kib in 80 128 256 1024; do
+        (ulimit -s $kib && exec "$GLINT" deep.lua -q >out 2>err)
+        check "$kib KiB of stack: deep.lua" test $? -eq 7
+        (ulimit -s $kib && exec "$GLINT" "$root/scripts/particle_box.lua" --size 48x36 -e 1 -o small.png -q >out 2>err)
+        check "$kib KiB of stack: particle_box.lua" test $? -eq 0
+    done
+    (ulimit -s 80 && exec "$GLINT" endless.lua -q >out 2>err) &
+    local pid=$!
+    sleep 0.5
+    kill -s TERM $pid
+    wait $pid
+    check "SIGTERM with 80 KiB of stack" test $? -eq 143
+}
+
 little_memory() {
     script knobs 'local glint = require "glint"
 local a, b = { x = 0.5 }, { x = 0.3 }
@@ -946,7 +970,7 @@ assert(a.frames == 10 and a.cyclic and a.width == 40)'
     clean
 }
 
-for part in names selection parameters options events errors whole small_disk signals same_bits little_memory comparing plain_lua; do
+for part in names selection parameters options events errors whole small_disk signals same_bits little_stack little_memory comparing plain_lua; do
     $part
     clean
 done
