@@ -138,7 +138,8 @@ DEFINES += $(PARTS_OUT:%=-DGLINT_WITHOUT_%=0,0) $(if $(PARTS_OUT),-Wno-type-limi
 # generic kernels, POSIX instead of inotify, eventfd etc., and no --untrusted.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE) $(if $(THREADS),,-DGLINT_NO_THREADS)
 
-# The functions of glint.h are visible in the shared library. Calls of them within the engine stay direct.
+# The public headers. Their functions are visible in the shared library. Calls of them within the engine stay direct.
+HEADERS := $(wildcard engine/glint*.h)
 OWN_CALLS := $(if $(WASM),,-fno-semantic-interposition)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -299,16 +300,16 @@ $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	$(Q)$(AR) qcs $@ $(ENGINE_OBJ) # q: sources of two folders may have one name
 
 # The shared library: its name includes the ABI version (for its guarantees see engine/README.md), it exports the
-# symbols of glint.h.
+# symbols of the public headers.
 ABI        := $(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
 shared_name = $(if $(MACOS),libglint$(1:%=.%).dylib,libglint.so$(1:%=.%))
 SHARED     := $(call shared_name,$(VERSION))
 SONAME     := $(call shared_name,$(ABI))
 
 # The list of exported symbols: a version script, or for Apple's linker a list of names.
-$(BUILD)/libglint.map: engine/glint.h
+$(BUILD)/libglint.map: $(HEADERS)
 	@mkdir -p $(@D)
-	@sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/\1/p' $< | sort -u | $(if $(MACOS),sed 's/^/_/', \
+	@sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/\1/p' $^ | sort -u | $(if $(MACOS),sed 's/^/_/', \
 	    { echo 'GLINT_$(ABI) {'; echo '  global:'; sed 's/.*/    &;/'; echo '  local: *;'; echo '};'; }) > $@
 
 $(BUILD)/$(SHARED): $(ENGINE_OBJ) $(BUILD)/libglint.map
@@ -814,7 +815,8 @@ define INSTALLED
 644 $(BUILD)/libglint.a $(libdir)/libglint.a
 644 $(BUILD)/$(SHARED) $(libdir)/$(SHARED)
 644 $(BUILD)/glint.pc $(libdir)/pkgconfig/glint.pc
-644 engine/glint.h $(incdir)/glint.h
+$(foreach header,$(HEADERS),644 $(header) $(incdir)/$(notdir $(header))
+)
 644 $(BUILD)/glint.1 $(datadir)/man/man1/glint.1
 644 $(BUILD)/meta/glint.lua $(datadir)/glint/glint.lua
 644 $(BUILD)/completion/bash $(datadir)/bash-completion/completions/glint

@@ -1,4 +1,4 @@
-/// A picture from C, using only the public header: a ball on the ground under one lamp.
+/// A picture from C, using only the public headers: a ball on the ground under one lamp.
 ///
 ///     cc c_example.c $(pkg-config --cflags --libs glint) -o c_example && ./c_example
 ///
@@ -8,6 +8,8 @@
 #include <stdlib.h>
 
 #include <glint.h>
+#include <glint_files.h>
+#include <glint_inspect.h>
 
 static glint_error error;
 

@@ -1,4 +1,4 @@
-/// Patterns from C, using only the public header: a ball of marble on a chessboard.
+/// Patterns from C, using only the public headers: a ball of marble on a chessboard.
 ///
 ///     cc c_pattern.c $(pkg-config --cflags --libs glint) -o c_pattern && ./c_pattern
 ///
@@ -8,6 +8,8 @@
 #include <stdlib.h>
 
 #include <glint.h>
+#include <glint_files.h>
+#include <glint_programs.h>
 
 static glint_error error;
 static glint_builder *pattern; ///< the pattern under construction

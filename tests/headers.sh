@@ -29,10 +29,18 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h engine/effects/*/*.h b
     esac
 done
 
-# The public header works in C++, with C linkage.
-if command -v c++ >/dev/null && ! printf '#include "engine/glint.h"\nint main() { return glint_sin(0) != 0 || !glint_pass_name(GLINT_PASS_DEPTH); }\n' |
+# A kernel is not compiled again when the description of a scene gets another field.
+for kernel in engine/stages/[^rs]*/*.c engine/effects/*/kernel*.c; do
+    if ${CC:-cc} "$@" -DGLINT_ISA=generic -DGLINT_REAL=64 -MM "$kernel" | grep -qw 'engine/glint\.h'; then
+        echo "$kernel depends on engine/glint.h"
+        bad=1
+    fi
+done
+
+# The public headers work in C++, with C linkage.
+if command -v c++ >/dev/null && ! { printf '#include "%s"\n' engine/glint*.h && echo 'int main() { return glint_sin(0) != 0 || !glint_pass_name(GLINT_PASS_DEPTH); }'; } |
     c++ -I. -Wall -Wextra -Werror -x c++ -S -o - - | grep -q '[^0-9]glint_sin'; then
-    echo "engine/glint.h does not compile as C++"
+    echo "the public headers do not compile as C++"
     bad=1
 fi
 

@@ -8,6 +8,8 @@
 
 #include "bindings/run/carried.h"
 #include "bindings/run/run.h"
+#include "engine/glint_files.h"
+#include "engine/glint_inspect.h"
 
 // ---- command_line.c, options.c ----
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "bindings/command/cli.h"
+#include "engine/glint_compare.h"
 
 typedef enum verdict { SAME, WARN, DIFFER, SIZE, UNREADABLE } verdict;
 

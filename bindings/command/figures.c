@@ -5,6 +5,7 @@
 #include "bindings/command/cli.h"
 #include "bindings/run/film.h"
 #include "bindings/run/sheet.h"
+#include "engine/glint_figures.h"
 
 static const unsigned char SHEET_LUA[] = {
 #include "bindings/command/sheet.lua.h"

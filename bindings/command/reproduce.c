@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
+#include "engine/glint_compare.h"
 
 #define UNREADABLE 5 // exit code: no whole picture with a key
 

@@ -25,6 +25,7 @@
 
 #include "bindings/command/cli.h"
 #include "bindings/run/carried.h"
+#include "engine/glint_compare.h"
 
 #define COST_VALUES_MAX 12
 

@@ -8,6 +8,8 @@
 #define GLINT_L_OVERLAY_H
 
 #include "bindings/value/glintL.h"
+#include "engine/glint_figures.h"
+#include "engine/glint_inspect.h"
 
 #include <stddef.h>
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_data.h"
 
 #define READER "glint.rows"
 #define COLUMNS_MAX 64

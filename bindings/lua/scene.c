@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_figures.h"
 
 typedef glint_scene_desc desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");

@@ -1,5 +1,6 @@
 // glint.colormap: a function from numbers to colours, inside and outside patterns.
 #include "bindings/pattern/pattern.h"
+#include "engine/glint_figures.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -18,6 +18,8 @@
 #define GLINT_PATTERN_H
 
 #include "bindings/value/glintL.h"
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 
 #define GLINTL_SYMBOL "glint.symbol"
 #define GLINTL_TRIPLE "glint.triple"

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_figures.h"
 
 #define SIDE 62 // points of a lobe on each side of its middle
 #define HALF_TURN 1.5707963 // a little less than pi / 2: directions to the viewer stay above the surface

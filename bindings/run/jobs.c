@@ -9,6 +9,7 @@
 #include "bindings/run/sheet.h"
 #include "bindings/run/system.h"
 #include "bindings/run/walk.h"
+#include "engine/glint_figures.h"
 
 #define WAITING_MAX 4096 // frames that may be planned before they are rendered
 
@@ -210,7 +211,7 @@ static bool costs_less_between_jobs(const waiting *w)
 {
     double cost[2] = { 0, 0 };
     int64_t steps[2] = { 0, 0 };
-    uint32_t stages;
+    uint64_t stages;
     for (int64_t at = 1; at < w->count; at++)
         for (int between_jobs = 0; between_jobs < 2; between_jobs++) {
             const int64_t before = at - (between_jobs ? w->frames : 1);

@@ -81,14 +81,14 @@ static void add_stage(glintL_order_axis *axis, const char *name)
 }
 
 // Adds the stages of a step. Every step ends with `resolve` and `tone`, which are named only if no other stage runs.
-static void add_stages(glintL_order_axis *axis, const glint_plan *plan, uint32_t runs)
+static void add_stages(glintL_order_axis *axis, const glint_plan *plan, uint64_t runs)
 {
     const glint_stage_info *stages;
     const size_t count = glint_plan_stages(plan, &stages);
-    for (size_t i = 0; i < count && i < 32; i++)
+    for (size_t i = 0; i < count; i++)
         if (runs >> i & 1 && strcmp(stages[i].name, "resolve") != 0 && strcmp(stages[i].name, "tone") != 0)
             add_stage(axis, stages[i].name);
-    for (size_t i = 0; i < count && i < 32 && !axis->stages[0]; i++)
+    for (size_t i = 0; i < count && !axis->stages[0]; i++)
         if (runs >> i & 1)
             add_stage(axis, stages[i].name);
 }
@@ -101,7 +101,7 @@ static bool probe_axis(glintL_order_axis *axis, int64_t middle, glintL_plan_fram
     glint_plan *last = NULL;
     bool good = true;
     for (int64_t i = 0; i < count && count > 1 && good; i++) {
-        uint32_t runs = 0;
+        uint64_t runs = 0;
         glint_plan *next = plan_frame(context, first + i * axis->stride);
         good = next || axis->may_fail;
         if (next && last) {

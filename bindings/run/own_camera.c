@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_figures.h"
 
 #define FOV 35.0 // degrees
 #define MARGIN 1.1

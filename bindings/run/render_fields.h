@@ -4,6 +4,8 @@
 #ifndef GLINT_L_RENDER_FIELDS_H
 #define GLINT_L_RENDER_FIELDS_H
 
+#include "engine/glint.h"
+
 /// FIELD(name, kind, sort, member of glintL_render, least, most, words)
 /// OPTION(the same, value, help): a field whose option has the same name and is described completely by this row.
 /// `value` is the option's value in --help; "": the words; NULL: the option is a switch. The options of the other

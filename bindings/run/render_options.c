@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_figures.h"
 
 #define SEED_MAX 9007199254740992.0 // 2^53
 #define DEPTH_MAX 2147483648.0 // 2^31

@@ -29,6 +29,9 @@
 
 #include "bindings/run/render_fields.h"
 #include "bindings/value/glintL.h"
+#include "engine/glint_files.h"
+#include "engine/glint_inspect.h"
+#include "engine/glint_programs.h"
 
 #define GLINTL_PATH_SIZE 4096
 #define GLINTL_MESSAGE_SIZE 1024

@@ -6,6 +6,7 @@
 #include "bindings/run/carried.h"
 #include "bindings/run/sheet.h"
 #include "bindings/run/system.h"
+#include "engine/glint_figures.h"
 
 #define PICTURE "glint.sheet picture"
 #define PIECE 24576 // bytes of a file; a multiple of three, so that only the last piece of base64 is padded

@@ -4,6 +4,7 @@
 #include "bindings/run/carried.h"
 #include "bindings/run/film.h"
 #include "bindings/run/sheet.h"
+#include "engine/glint_figures.h"
 
 // ---- Fields ----
 

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_compare.h"
 
 #define STUCK 0.9 // four times the samples reduce most errors to a half or less
 #define RISE 1.3 // estimates of ordinary pictures fall with each doubling of the samples, or rise by less

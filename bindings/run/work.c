@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bindings/run/run.h"
+#include "engine/glint_figures.h"
 
 static glint_status fail(glint_error *error, glint_status status, const char *what, const char *text, const char *rest)
 {

@@ -10,6 +10,9 @@
 #include <lua.h>
 
 #include "engine/glint.h"
+#include "engine/glint_files.h"
+#include "engine/glint_inspect.h"
+#include "engine/glint_programs.h"
 
 // ---- check.c: reading arguments and tables ----
 

@@ -13,6 +13,7 @@
 #include "bindings/command/cli.h"
 #include "bindings/run/carried.h"
 #include "bindings/watch/watch.h"
+#include "engine/glint_compare.h"
 
 #define PREVIEW_SIDE 640
 #define STEPS_BETWEEN_LOOKS 10000 // instructions of the script between two checks

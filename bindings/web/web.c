@@ -46,6 +46,7 @@ static web_job job;
 
 static const unsigned char PRELUDE[] = {
 #include "bindings/web/prelude.lua.h"
+#include "engine/glint_compare.h"
 };
 
 // ---- Parts of the command that are missing here ----

@@ -3,7 +3,7 @@
 #ifndef GLINT_BASE_DUAL_H
 #define GLINT_BASE_DUAL_H
 
-#include "engine/glint.h"
+#include "engine/glint_math.h"
 
 #include <math.h>
 

@@ -3,6 +3,8 @@
 #define GLINT_MAKER_H
 
 #include "engine/glint.h"
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 
 typedef struct glint_maker {
     glint_builder *builder;

@@ -1,5 +1,6 @@
 /// The operations and inputs of programs by name.
 #include "engine/glint.h"
+#include "engine/glint_math.h"
 
 static const glint_op_info operations[GLINT_OP_COUNT] = {
     [GLINT_OP_ADD] = { "add", 2, 1 },

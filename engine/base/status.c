@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+const char *glint_version(void) { return GLINT_VERSION; }
+
 glint_status glint_fail(glint_error *error, glint_status status, const char *format, ...)
 {
     if (error) {

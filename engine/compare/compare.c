@@ -4,6 +4,8 @@
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
 #include "engine/file/write.h"
+#include "engine/glint_compare.h"
+#include "engine/glint_math.h"
 
 #include <math.h>
 

@@ -6,6 +6,7 @@
 #include "engine/base/sequence.h"
 #include "engine/base/status.h"
 #include "engine/film/image.h"
+#include "engine/glint_compare.h"
 
 #include <math.h>
 

@@ -1,6 +1,7 @@
 #include "engine/compare/flip.h"
 
 #include "engine/base/status.h"
+#include "engine/glint_math.h"
 
 #include <math.h>
 #include <stdlib.h>

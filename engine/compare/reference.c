@@ -3,6 +3,7 @@
 #include "engine/compare/flip.h"
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
+#include "engine/glint_compare.h"
 
 #include <math.h>
 #include <stdlib.h>

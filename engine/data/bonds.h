@@ -3,6 +3,7 @@
 #define GLINT_DATA_BONDS_H
 
 #include "engine/glint.h"
+#include "engine/glint_data.h"
 
 /// Called for a bond of atoms a and b, with the vector from b to a, or from b to the nearest image of a.
 typedef void glint_bond_found(void *context, size_t a, size_t b, const double step[3]);

@@ -4,6 +4,7 @@
 #define GLINT_IMAGE_BANDS_H
 
 #include "engine/glint.h"
+#include "engine/glint_files.h"
 #include "engine/file/bytes.h"
 #include "engine/file/png.h"
 

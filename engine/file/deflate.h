@@ -7,6 +7,7 @@
 #define GLINT_IMAGE_DEFLATE_H
 
 #include "engine/glint.h"
+#include "engine/glint_files.h"
 #include "engine/file/bytes.h"
 
 /// Returns whether a stream may have several bands in this build.

@@ -1,6 +1,7 @@
 /// A draft of a file: hidden next to its final name until it is complete.
 #include "engine/base/status.h"
 #include "engine/file/file.h"
+#include "engine/glint_files.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -6,6 +6,7 @@
 #define GLINT_IMAGE_EXR_H
 
 #include "engine/glint.h"
+#include "engine/glint_files.h"
 #include "engine/file/bytes.h"
 #include "engine/file/pfm.h"
 

@@ -9,6 +9,7 @@
 
 #ifdef GLINT_HAVE_OPENEXR
 #include "engine/file/exr_chunks.h"
+#include "engine/glint_files.h"
 
 typedef struct exr_input {
     exr_context_t context;

@@ -6,7 +6,7 @@
 #include "engine/base/open.h"
 #include "engine/file/bytes.h"
 
-/// Writes a whole file as one glint_draft, see glint.h. The caller must ignore SIGXFSZ and SIGPIPE; then EFBIG and
+/// Writes a whole file as one glint_draft, see glint_files.h. The caller must ignore SIGXFSZ and SIGPIPE; then EFBIG and
 /// EPIPE are reported like other errors. draft.c
 glint_status glint_file_write(const char *path, const void *bytes, size_t size, glint_error *error);
 

@@ -5,6 +5,7 @@
 /// is gone and its lock is free; a draft of another host, whose process cannot be checked, one day after its last
 /// write.
 #include "engine/file/file.h"
+#include "engine/glint_files.h"
 
 #include <ctype.h>
 #include <dirent.h>

@@ -3,6 +3,7 @@
 #define GLINT_IMAGE_PNG_H
 
 #include "engine/glint.h"
+#include "engine/glint_files.h"
 #include "engine/file/bytes.h"
 
 #define GLINT_PNG_TEXT_MAX 65536 ///< bytes of one text value

@@ -3,6 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
+#include "engine/glint_inspect.h"
 
 #include <math.h>
 

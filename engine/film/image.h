@@ -4,6 +4,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/glint.h"
+#include "engine/glint_programs.h"
 #include "engine/overlay/overlay.h"
 #include "engine/stages/stages.h"
 

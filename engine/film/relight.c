@@ -1,5 +1,6 @@
 #include "engine/film/relight.h"
 #include "engine/base/status.h"
+#include "engine/glint_files.h"
 
 #include <stdlib.h>
 #include <string.h>

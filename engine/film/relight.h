@@ -1,4 +1,4 @@
-/// Pictures with other strengths and colours of their lights. Internal; the public part is in glint.h.
+/// Pictures with other strengths and colours of their lights. Internal; the public part is in glint_files.h.
 #ifndef GLINT_FILM_RELIGHT_H
 #define GLINT_FILM_RELIGHT_H
 

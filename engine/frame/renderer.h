@@ -7,6 +7,7 @@
 #include "engine/film/tone.h"
 #include "engine/frame/grids.h"
 #include "engine/effects/adaptive/choose.h"
+#include "engine/glint_inspect.h"
 #include "engine/reuse/reuse.h"
 #include "engine/tile/tile.h"
 

@@ -1,3 +1,4 @@
+#include "engine/glint_math.h"
 #include "engine/ink/stamps.h"
 
 #include "engine/base/status.h"

@@ -1,4 +1,5 @@
 /// A chart: the title, curves over a grid, numbers and names along two axes, and each curve's label at its end.
+#include "engine/glint_math.h"
 #include "engine/overlay/layout.h"
 #include "engine/overlay/marks.h"
 

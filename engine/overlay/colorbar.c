@@ -1,4 +1,5 @@
 /// A colour bar: the title above, the bar, and next to it or below it the numbers with their marks.
+#include "engine/glint_math.h"
 #include "engine/overlay/layout.h"
 #include "engine/overlay/marks.h"
 

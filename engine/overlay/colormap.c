@@ -1,4 +1,5 @@
 #include "engine/glint.h"
+#include "engine/glint_figures.h"
 
 #include "engine/overlay/colormap_table.h"
 

@@ -4,6 +4,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/glint.h"
+#include "engine/glint_figures.h"
 
 /// Extends a key by all curves.
 glint_key glint_chart_key(const glint_chart *chart, glint_key key);

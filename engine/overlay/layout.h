@@ -2,6 +2,7 @@
 #ifndef GLINT_OVERLAY_LAYOUT_H
 #define GLINT_OVERLAY_LAYOUT_H
 
+#include "engine/glint_figures.h"
 #include "engine/ink/ink.h"
 #include "engine/overlay/overlay.h"
 #include "engine/overlay/pointer.h"

@@ -1,4 +1,5 @@
 #include "engine/base/number.h"
+#include "engine/glint_math.h"
 #include "engine/overlay/marks.h"
 
 #include <float.h>

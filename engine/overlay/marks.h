@@ -3,6 +3,7 @@
 #define GLINT_OVERLAY_MARKS_H
 
 #include "engine/glint.h"
+#include "engine/glint_figures.h"
 #include "engine/text/typeface.h"
 
 typedef struct glint_mark {

@@ -14,6 +14,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/glint.h"
+#include "engine/glint_figures.h"
 #include "engine/ink/ink.h"
 
 #include <stdatomic.h>

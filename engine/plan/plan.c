@@ -3,6 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/film/tone.h"
+#include "engine/glint_files.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -97,7 +98,7 @@ static bool shades_together(const glint_plan *plan)
            plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
-_Static_assert(GLINT_STAGE_COUNT <= 32, "a bit a stage");
+_Static_assert(GLINT_STAGE_COUNT <= GLINT_STAGE_MAX, "a bit of glint_stage_set and a row of the statistics for each stage");
 
 /// Lists the steps of the frame's stages in the walk of a tile, for each time of the walk.
 static void list_steps(glint_plan *plan)
@@ -105,12 +106,12 @@ static void list_steps(glint_plan *plan)
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         const glint_stage *stage = glint_stage_table[id];
         for (int time = 0; time < GLINT_TIME_COUNT; time++)
-            plan->steps[time] |= (uint32_t)(plan->runs[id] && stage->step[time]) << id;
-        plan->limits |= (uint32_t)(plan->runs[id] && stage->limit) << id;
-        plan->admits |= (uint32_t)(plan->runs[id] && stage->admit) << id;
-        plan->singles |= (uint32_t)(plan->runs[id] && stage->singles) << id;
-        plan->before_shade |= (uint32_t)(plan->runs[id] && stage->before_shade) << id;
-        plan->after_shade |= (uint32_t)(plan->runs[id] && stage->after_shade) << id;
+            plan->steps[time] |= (glint_stage_set)(plan->runs[id] && stage->step[time]) << id;
+        plan->limits |= (glint_stage_set)(plan->runs[id] && stage->limit) << id;
+        plan->admits |= (glint_stage_set)(plan->runs[id] && stage->admit) << id;
+        plan->singles |= (glint_stage_set)(plan->runs[id] && stage->singles) << id;
+        plan->before_shade |= (glint_stage_set)(plan->runs[id] && stage->before_shade) << id;
+        plan->after_shade |= (glint_stage_set)(plan->runs[id] && stage->after_shade) << id;
         plan->reads_normals = plan->reads_normals || (plan->runs[id] && stage->normals);
     }
 }

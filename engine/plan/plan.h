@@ -15,6 +15,7 @@
 
 #include "engine/geometry/geometry.h"
 #include "engine/geometry/media.h"
+#include "engine/glint_inspect.h"
 #include "engine/overlay/overlay.h"
 #include "engine/effects/derivative/plan.h"
 #include "engine/effects/indirect/plan.h"
@@ -133,9 +134,9 @@ struct glint_plan {
 
     bool runs[GLINT_STAGE_COUNT];
     void *own[GLINT_STAGE_COUNT]; ///< what only this stage reads, see glint_stage; owned
-    uint32_t steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages that have a step then, one bit each
-    uint32_t limits, admits, singles; ///< the stages that have the functions `limit`, `admit` and `singles`, one bit each
-    uint32_t before_shade, after_shade; ///< those that have these functions
+    glint_stage_set steps[GLINT_TIME_COUNT]; ///< for each time of the walk, the stages that have a step then, one bit each
+    glint_stage_set limits, admits, singles; ///< the stages that have the functions `limit`, `admit` and `singles`, one bit each
+    glint_stage_set before_shade, after_shade; ///< those that have these functions
     bool reads_normals; ///< whether some stage is likely to read normals
     glint_key where; ///< hash of the geometry's positions
     glint_key keys[GLINT_STAGE_COUNT];
@@ -162,7 +163,7 @@ struct glint_plan {
 /// Takes a stage out of a copy of a plan.
 static inline void glint_plan_drop(glint_plan *plan, glint_stage_id id)
 {
-    const uint32_t others = ~(UINT32_C(1) << id);
+    const glint_stage_set others = ~((glint_stage_set)1 << id);
     plan->runs[id] = false;
     for (int time = 0; time < GLINT_TIME_COUNT; time++)
         plan->steps[time] &= others;

@@ -12,6 +12,9 @@
 #define GLINT_STAGE_ID(id, name) GLINT_STAGE_##id,
 typedef enum glint_stage_id { GLINT_STAGES(GLINT_STAGE_ID) GLINT_STAGE_COUNT } glint_stage_id;
 
+/// A set of stages: bit i is that of number i.
+typedef uint64_t glint_stage_set;
+
 struct glint_plan;
 struct glint_plan_input;
 

@@ -25,7 +25,7 @@ static double shade_work(const glint_plan *plan, const glint_plan *before)
     return matte && highlights ? 0.5 : 1;
 }
 
-double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint32_t *stages)
+double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, uint64_t *stages)
 {
     if (!plan || !before || !stages)
         return 0;
@@ -35,7 +35,7 @@ double glint_plan_work_after(const glint_plan *plan, const glint_plan *before, u
         if (!plan->runs[id] || !glint_stage_table[id]->name)
             continue;
         if (!before->runs[id] || !glint_key_equal(plan->keys[id], before->keys[id])) {
-            *stages |= 1u << i;
+            *stages |= (uint64_t)1 << i;
             work += id == GLINT_STAGE_LIGHT     ? changed_lights(plan, before, false)
                     : id == GLINT_STAGE_OCCLUDE ? changed_lights(plan, before, true)
                     : id == GLINT_STAGE_SHADE   ? shade_work(plan, before)

@@ -2,6 +2,8 @@
 #ifndef GLINT_PROGRAM_BUILDER_H
 #define GLINT_PROGRAM_BUILDER_H
 
+#include "engine/glint.h"
+#include "engine/glint_programs.h"
 #include "engine/program/program.h"
 
 #define GLINT_SSA_NUMBER GLINT_OP_COUNT ///< kinds of node that are not operations

@@ -3,6 +3,8 @@
 #define GLINT_PROGRAM_H
 
 #include "engine/base/hash.h"
+#include "engine/glint.h"
+#include "engine/glint_programs.h"
 #include "engine/stages/stages.h"
 
 #include <stdatomic.h>

@@ -3,6 +3,7 @@
 #define GLINT_FIELDS_H
 
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 
 #include <float.h>
 

@@ -1,4 +1,5 @@
 #include "engine/base/status.h"
+#include "engine/glint_programs.h"
 #include "engine/scene/fields.h"
 #include "engine/scene/objects.h"
 #include "engine/stages/stages.h"

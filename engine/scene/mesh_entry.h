@@ -2,6 +2,7 @@
 #ifndef GLINT_MESH_ENTRY_H
 #define GLINT_MESH_ENTRY_H
 
+#include "engine/glint_programs.h"
 #include "engine/scene/mesh_mtl.h"
 
 #define GLINT_MESH_NO_FACE 0xffffffffu

@@ -3,6 +3,7 @@
 
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/glint_files.h"
 #include "engine/scene/mesh_mtl.h"
 #include "engine/scene/objects.h"
 

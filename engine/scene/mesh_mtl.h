@@ -2,6 +2,7 @@
 #ifndef GLINT_MESH_MTL_H
 #define GLINT_MESH_MTL_H
 
+#include "engine/glint_programs.h"
 #include "engine/scene/mesh_file.h"
 
 /// The mapping of a picture: texture coordinates times `scale` plus `offset`.

@@ -2,6 +2,7 @@
 #include "engine/base/math.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/glint_inspect.h"
 #include "engine/scene/objects.h"
 
 #include <stdlib.h>

@@ -1,4 +1,6 @@
 #include "engine/base/status.h"
+#include "engine/glint_figures.h"
+#include "engine/glint_programs.h"
 #include "engine/scene/fields.h"
 #include "engine/scene/objects.h"
 #include "engine/stages/stages.h"

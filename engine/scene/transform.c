@@ -1,6 +1,7 @@
 /// Affine maps.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/glint_math.h"
 #include "engine/scene/objects.h"
 
 glint_transform glint_transform_identity(void)

@@ -7,6 +7,7 @@
 #define GLINT_SHEET_LAYOUT_H
 
 #include "engine/glint.h"
+#include "engine/glint_figures.h"
 #include "engine/ink/ink.h"
 
 #define GLINT_SHEET_INK 0x222222 // of texts

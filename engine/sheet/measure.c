@@ -1,4 +1,5 @@
 /// The measures and the texts of a contact sheet.
+#include "engine/glint_math.h"
 #include "engine/sheet/layout.h"
 
 #include "engine/overlay/overlay.h"

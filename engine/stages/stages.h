@@ -75,7 +75,7 @@ typedef struct glint_stages {
     const char *name;
     struct glint_geometry_stages {
         GLINT_GEOMETRY_KERNELS(GLINT_KERNEL_MEMBER)
-    } geometry[2]; ///< by glint_precision: double, float
+    } geometry[2]; ///< double, float
     GLINT_SAMPLE_KERNELS(GLINT_KERNEL_MEMBER)
 } glint_stages;
 
@@ -88,7 +88,8 @@ bool glint_stages_usable(const glint_stages *stages);
 /// GLINT_ISA names, otherwise the best one that the machine supports. Returns NULL if the name is unknown (*unknown
 /// is true) or the machine lacks the instruction set (*unknown is false); *requested is the name.
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
-/// Returns the kernels of a frame in this precision: `stages`, or the reference in a build without float kernels.
-const glint_stages *glint_stages_for(const glint_stages *stages, glint_precision precision);
+/// Returns the kernels of a frame whose geometry is float or double: `stages`, or the reference in a build without float
+/// kernels.
+const glint_stages *glint_stages_for(const glint_stages *stages, bool is_float);
 
 #endif

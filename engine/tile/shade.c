@@ -126,13 +126,13 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         for (int c = 0; c < 3; c++)
             args.sum[k][c] = plan->accumulate && !tile->direct ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
-    for (uint32_t bits = plan->before_shade; bits; bits &= bits - 1)
-        glint_stage_table[__builtin_ctz(bits)]->before_shade(tile, frame, &args, lights, from, count);
+    for (glint_stage_set bits = plan->before_shade; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctzll(bits)]->before_shade(tile, frame, &args, lights, from, count);
     if (count > 0 && plan->runs[GLINT_STAGE_SHADER] && glint_tile_shows_shader(tile, plan)) // then no light is summed
         run_shaders(tile, frame, from, count, lights);
     frame->stages->shade(&args);
-    for (uint32_t bits = plan->after_shade; bits; bits &= bits - 1)
-        glint_stage_table[__builtin_ctz(bits)]->after_shade(tile, frame, &args, from, count);
+    for (glint_stage_set bits = plan->after_shade; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctzll(bits)]->after_shade(tile, frame, &args, from, count);
     glint_tile_count_powers(tile, frame, from, count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
 }

@@ -17,8 +17,8 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
         if (tile->at.light[i].cosine != glint_tile_own_light(tile, i)->cosine ||
             (light->shadows && tile->at.light[i].unoccluded != glint_tile_own_light(tile, i)->unoccluded))
             return false;
-    for (uint32_t bits = plan->singles; bits; bits &= bits - 1)
-        if (glint_stage_table[__builtin_ctz(bits)]->singles(tile, frame, light))
+    for (glint_stage_set bits = plan->singles; bits; bits &= bits - 1)
+        if (glint_stage_table[__builtin_ctzll(bits)]->singles(tile, frame, light))
             return false;
     return true;
 }

@@ -289,8 +289,8 @@ static void leave_unlit(const glint_tile *tile, const glint_light_args *args)
 /// Lets stages remove lanes from those that a light shines on.
 static void limit(glint_tile *tile, const glint_plan *plan, const glint_light_args *args)
 {
-    for (uint32_t bits = plan->limits; bits; bits &= bits - 1)
-        glint_stage_table[__builtin_ctz(bits)]->limit(tile, plan, args);
+    for (glint_stage_set bits = plan->limits; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctzll(bits)]->limit(tile, plan, args);
 }
 
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -389,8 +389,8 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
 static void admit(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, bool middle, const uint16_t *lit,
                   uint16_t *unoccluded)
 {
-    for (uint32_t bits = frame->plan->admits; bits; bits &= bits - 1)
-        glint_stage_table[__builtin_ctz(bits)]->admit(tile, frame, light, middle, lit, unoccluded);
+    for (glint_stage_set bits = frame->plan->admits; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctzll(bits)]->admit(tile, frame, light, middle, lit, unoccluded);
 }
 
 /// Casts one ray to the middle of an area light for all samples of the call.

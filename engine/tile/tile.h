@@ -239,8 +239,8 @@ void glint_tile_need_points(glint_tile *tile, const glint_tile_frame *frame, gli
 /// Calls the steps of all stages of the frame at a time of the walk.
 static inline void glint_tile_step(glint_tile *tile, const glint_tile_frame *frame, glint_stage_time time, glint_sample_walk *walk)
 {
-    for (uint32_t bits = frame->plan->steps[time]; bits; bits &= bits - 1)
-        glint_stage_table[__builtin_ctz(bits)]->step[time](tile, frame, walk);
+    for (glint_stage_set bits = frame->plan->steps[time]; bits; bits &= bits - 1)
+        glint_stage_table[__builtin_ctzll(bits)]->step[time](tile, frame, walk);
 }
 
 static inline bool glint_tile_cancelled(const glint_tile_frame *frame)

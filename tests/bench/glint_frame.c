@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "engine/glint_inspect.h"
 #include "tests/bench/glint_side.h"
 
 enum { ROUNDS = 15, LIMIT_S = 20, LAST = 15 };

@@ -1,6 +1,7 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
+#include "engine/glint_files.h"
 #include "tests/bench/glint_side.h"
 
 static glint_write_desc write_desc(const char *path, glint_encode encode)

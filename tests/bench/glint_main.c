@@ -14,6 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/glint_compare.h"
+#include "engine/glint_files.h"
 #include "tests/bench/glint_side.h"
 
 static void run_picture(const bench_options *options)

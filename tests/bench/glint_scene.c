@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/glint_programs.h"
 #include "tests/bench/glint_side.h"
 
 #define PI 3.14159265358979323846

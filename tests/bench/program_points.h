@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "engine/glint.h"
+#include "engine/glint_math.h"
 
 enum { PROGRAM_POINTS = 128, PROGRAM_REPEATS = 100 };
 

@@ -10,6 +10,7 @@
 
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
+#include "engine/glint_inspect.h"
 
 #define WIDTH 4
 #define HEIGHT 3

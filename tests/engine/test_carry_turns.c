@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "engine/film/image.h"
+#include "engine/glint_inspect.h"
 #include "tests/engine/cases/random.h"
 
 enum { MESHES = 12, LAMPS = 60, BALLS = 30, MOVES = 60, CROWD = 17000 };

@@ -1,6 +1,7 @@
 /// Constructive solid geometry (CSG): identical pictures on every instruction set, hits against point sets in 113-bit
 /// arithmetic, coincident faces, and CSG shapes that equal a single solid.
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "engine/glint_files.h"
 #include "tests/engine/cases/builder_case.h"
 
 #define WIDTH 64

@@ -2,6 +2,7 @@
 /// patterns that are constants, inside and outside a field's range.
 #include <string.h>
 
+#include "engine/glint_inspect.h"
 #include "tests/engine/cases/builder_case.h"
 
 #define WIDTH 96

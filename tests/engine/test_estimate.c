@@ -1,4 +1,5 @@
 /// The error of a picture from its own samples: the seeds of partners, and the estimate of pictures with known errors.
+#include "engine/glint_compare.h"
 #include "tests/engine/cases/image_case.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 /// Image files: PNG, atomic writes, the writer.
+#include "engine/glint_compare.h"
 #include "tests/engine/cases/image_case.h"
 
 #include <png.h>

@@ -1,6 +1,7 @@
 /// FLIP against a direct implementation of the paper's formulas in two dimensions, values computed by hand, and
 /// properties; the other error measures on pictures with known errors.
 #include "engine/compare/flip.h"
+#include "engine/glint_compare.h"
 #include "tests/engine/cases/image_case.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 /// Images: planes, tone, the passes as pictures, comparison.
+#include "engine/glint_compare.h"
 #include "tests/engine/cases/image_case.h"
 
 // ---- Image --------------------------------------------------------------------------------------------------------

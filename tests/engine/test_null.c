@@ -9,6 +9,13 @@
 #include <cmocka.h>
 
 #include "engine/glint.h"
+#include "engine/glint_compare.h"
+#include "engine/glint_data.h"
+#include "engine/glint_figures.h"
+#include "engine/glint_files.h"
+#include "engine/glint_inspect.h"
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 
 /// Checks that `call` refuses the argument `name` and fills `error`.
 #define REFUSES(name, call) \
@@ -155,7 +162,7 @@ static void test_null_of_frames(void **state)
     destroy(&p);
 }
 
-/// Calls every function of engine/glint.h that takes a pointer, with NULL for all its pointers. A status must be
+/// Calls every function of the public headers that takes a pointer, with NULL for all its pointers. A status must be
 /// GLINT_ERR_INVALID, a transform the identity, and any other result 0, NULL or false. tests/lua/check_header.lua
 /// finds functions that are missing here.
 static void test_null_of_every_function(void **state)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 #include "tests/engine/quad.h"
 
 static uint64_t state;

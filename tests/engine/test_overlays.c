@@ -1,5 +1,6 @@
 /// Labels, colour bars and axes: the pixel values that they write, their positions,
 /// and the pixels that they leave untouched.
+#include "engine/glint_inspect.h"
 #include "tests/engine/cases/image_case.h"
 
 #include "engine/overlay/overlay.h"

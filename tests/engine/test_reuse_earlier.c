@@ -1,6 +1,7 @@
 /// Results of frames before the last one. Lights and cameras that cycle through positions run no stage again.
 /// Whatever returns, in any order, with little or much memory, each frame equals the same frame rendered afresh.
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

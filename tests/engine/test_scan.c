@@ -2,6 +2,7 @@
 /// with corners and edges at pixel centres, in both precisions and projections. Object, distance and normal must be
 /// identical bit for bit in every pixel. Also tests frames without triangles or without a BVH.
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 
 #include <math.h>
 #include <setjmp.h>

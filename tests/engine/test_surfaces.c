@@ -2,6 +2,8 @@
 /// no light leaks at edges, no self-shadowing of flat meshes, distances and normals against 113-bit arithmetic, and
 /// .obj files with their errors.
 #include "engine/glint.h"
+#include "engine/glint_files.h"
+#include "engine/glint_inspect.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 /// Reads the input as a mesh file, whose type is detected from the first bytes, or as the mesh's material file. The
 /// result is a message, or a mesh, which is rendered from the front in a small picture.
 #include "engine/glint.h"
+#include "engine/glint_files.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <string.h>

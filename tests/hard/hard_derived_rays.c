@@ -1,5 +1,6 @@
 /// Derivatives of pictures in mirrors and glass against central differences of the formulas in 113 bits: with respect
 /// to mirror and transmission, positions, and the properties of the surfaces that secondary rays hit.
+#include "engine/glint_programs.h"
 #include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/slopes.h"
 

@@ -1,5 +1,6 @@
 /// Derivatives of flat and Gouraud shaded meshes against central differences of the formulas in 113 bits. Light is
 /// computed once per face or vertex and interpolated at each sample, whose position moves with the eye.
+#include "engine/glint_programs.h"
 #include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/slopes.h"
 

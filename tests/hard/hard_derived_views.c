@@ -1,5 +1,6 @@
 /// Derivatives with respect to the camera against central differences of the formulas in 113 bits: perspective and
 /// orthographic cameras, with and without a lens, and depth cueing, from outside and from inside an absorbing medium.
+#include "engine/glint_programs.h"
 #include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/slopes.h"
 

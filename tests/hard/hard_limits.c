@@ -1,6 +1,7 @@
 /// Pictures at the limits of valid input: scenes scaled by powers of two, numbers near the largest, the largest
 /// sizes, the most lights, the most spheres, and empty scenes;
 /// for each instruction set and several numbers of threads.
+#include "engine/glint_files.h"
 #include "tests/engine/cases/sets.h"
 #include "tests/engine/cases/step.h"
 #include "tests/hard/oracle/drive.h"

@@ -1,5 +1,7 @@
 /// Triangles: rays at shared edges and corners, and triangles without area; coordinates on a ball at its poles. The
 /// textbook's triangle test is Moeller-Trumbore.
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 #include "tests/hard/oracle/shell.h"
 
 #include <string.h>

@@ -1,5 +1,7 @@
 /// Test cases for reflections, sums of lights and pixel values, each also rotated and scaled; shininess from 0 to
 /// 1e7; pixel values as read from a PNG file.
+#include "engine/glint_files.h"
+#include "engine/glint_math.h"
 #include "tests/hard/oracle/point.h"
 
 #include <math.h>

@@ -1,5 +1,7 @@
 /// Derivatives of programs with respect to their inputs and constants, against central differences in 113 bits:
 /// random formulas of all differentiable operations, at random points.
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/quad.h"
 

@@ -1,4 +1,4 @@
--- engine/glint.h documents every type, function, field and constant: in a comment on its line, above it, or above its
+-- The public headers document every type, function, field and constant: in a comment on its line, above it, or above its
 -- group of lines. A test must call each function that takes a pointer with NULL.
 local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
@@ -34,25 +34,43 @@ local function declarations(path)
   return list
 end
 
-local count = 0
-for _, d in ipairs(declarations "engine/glint.h") do
-  if not d.text:match "^%s*}" then
-    count = count + 1
-    check(d.explained, "engine/glint.h:%d: not explained: %s", d.line, d.text:match "^%s*(.-)%s*$")
-  end
-end
-check(count > 300, "%d declarations", count)
-
--- Every function that takes a pointer must be called with NULL.
 local function text_of(path)
   local file <close> = assert(io.open(path))
   return file:read "a"
 end
+
+local headers = {}
+for _, name in ipairs { "", "_compare", "_data", "_figures", "_files", "_inspect", "_math", "_programs" } do
+  headers[#headers + 1] = "engine/glint" .. name .. ".h"
+end
+local listed <close> = assert(io.popen "ls engine/glint*.h")
+check(listed:read "a" == table.concat(headers, "\n") .. "\n", "the public headers are others")
+local count = 0
+for _, path in ipairs(headers) do
+  for _, d in ipairs(declarations(path)) do
+    if not d.text:match "^%s*}" then
+      count = count + 1
+      check(d.explained, "%s:%d: not explained: %s", path, d.line, d.text:match "^%s*(.-)%s*$")
+    end
+  end
+end
+check(count > 300, "%d declarations", count)
+local lines = select(2, text_of("engine/glint.h"):gsub("\n", ""))
+check(lines <= 900, "engine/glint.h has %d lines, at most 900 are wanted", lines)
+
+-- The version as a text and as numbers.
+local version = {}
+for part in text_of("engine/glint.h"):gmatch "#define GLINT_VERSION_%u+ (%d+)" do version[#version + 1] = part end
+check(table.concat(version, ".") == text_of("engine/glint.h"):match '#define GLINT_VERSION "([%d.]+)"', "the numbers of the version")
+
+-- Every function that takes a pointer must be called with NULL.
 local calls, functions = text_of "tests/engine/test_null.c", 0
-for name, arguments in text_of("engine/glint.h"):gsub("//[^\n]*", ""):gmatch "\n%w[%w_ *]-(glint_[%w_]+)(%b());" do
-  if arguments:find "[*%[]" then
-    functions = functions + 1
-    check(calls:find(name .. "(", 1, true), "tests/engine/test_null.c does not call %s", name)
+for _, path in ipairs(headers) do
+  for name, arguments in text_of(path):gsub("//[^\n]*", ""):gmatch "\n%w[%w_ *]-(glint_[%w_]+)(%b());" do
+    if arguments:find "[*%[]" then
+      functions = functions + 1
+      check(calls:find(name .. "(", 1, true), "tests/engine/test_null.c does not call %s", name)
+    end
   end
 end
 check(functions > 150, "%d functions that take a pointer", functions)

@@ -58,7 +58,7 @@ all_c11() { [ "$(grep -c -- '-c ' "$calls")" -gt 300 ] && ! grep -- '-c ' "$call
 everywhere() {
     check "$name: every file is compiled by the rules of bits" all_c11
     check "$name: the command, the module, the archive, the header" env -C "$there/opt/glint" test -x bin/glint -a -s lib/lua/5.4/glint.so -a \
-        -e lib/libglint.a -a -s include/glint.h -a -s lib/pkgconfig/glint.pc -a -s share/lua/5.4/gr.lua -a -s share/doc/glint/engine.md
+        -e lib/libglint.a -a -s include/glint.h -a -s include/glint_programs.h -a -s lib/pkgconfig/glint.pc -a -s share/lua/5.4/gr.lua -a -s share/doc/glint/engine.md
     check "$name: links of pages lead to pages" eval '! grep -nE "]\((\.\./)*(bindings|engine|scripts|tests)/|]\([a-z_]*\.(lua|c)\)" "$there"/opt/glint/share/doc/glint/*.md'
     check "$name: Lua in the command, by its name there" has glint "-l$lua "
     check "$name: no Lua in the module" eval '! has glint.so "-llua"'

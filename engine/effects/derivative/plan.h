@@ -5,6 +5,7 @@
 #include "engine/base/dual.h"
 #include "engine/base/hash.h"
 #include "engine/effects/pattern/plan.h"
+#include "engine/glint_programs.h"
 #include "engine/program/program.h"
 #include "engine/stages/stages.h"
 

@@ -3,7 +3,7 @@
 #ifndef GLINT_CONTRACT_PROGRAM_H
 #define GLINT_CONTRACT_PROGRAM_H
 
-#include "engine/base/math.h" // operations and inputs are those of glint.h
+#include "engine/base/math.h" // operations and inputs are those of glint_math.h
 #include "engine/stages/contract/hits.h"
 
 #define GLINT_PROGRAM_GROUPS 16 ///< maximum groups per call
@@ -134,6 +134,6 @@ typedef struct glint_choose_args {
     float *plane; ///< out
 } glint_choose_args;
 
-// glint.h describes each operation; ref.h and ref_pattern.h have the arithmetic and its order.
+// glint_math.h describes each operation; ref.h and ref_pattern.h have the arithmetic and its order.
 
 #endif

@@ -65,12 +65,12 @@ const glint_stages *glint_stages_select(const char *name, const char **requested
     return best;
 }
 
-const glint_stages *glint_stages_for(const glint_stages *stages, glint_precision precision)
+const glint_stages *glint_stages_for(const glint_stages *stages, bool is_float)
 {
 #ifdef GLINT_NO_FLOAT
-    if (precision == GLINT_FLOAT)
+    if (is_float)
         return &glint_stages_ref;
 #endif
-    (void)precision;
+    (void)is_float;
     return stages;
 }

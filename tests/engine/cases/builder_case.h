@@ -10,6 +10,8 @@
 #include <cmocka.h>
 
 #include "engine/glint.h"
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 
 static glint_error error;
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 
 static inline void add_ball(glint_scene *scene, const double center[3], double radius, double mirror)
 {

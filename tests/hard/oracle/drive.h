@@ -1,8 +1,9 @@
-/// Helpers that use the engine only through engine/glint.h, and the counting of checks that every program here uses.
+/// Helpers that use the engine only through its public headers, and the counting of checks that every program here uses.
 #ifndef HARD_DRIVE_H
 #define HARD_DRIVE_H
 
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 #include "tests/hard/oracle/oracle.h"
 
 #include <math.h>

@@ -6,6 +6,7 @@
 #define HARD_JUDGE_H
 
 #include "engine/glint.h"
+#include "engine/glint_inspect.h"
 #include "tests/hard/oracle/oracle.h"
 
 typedef enum verdict {

@@ -2,6 +2,8 @@
 #ifndef GLINT_HARD_SHADERS_H
 #define GLINT_HARD_SHADERS_H
 
+#include "engine/glint_math.h"
+#include "engine/glint_programs.h"
 #include "tests/hard/oracle/drive.h"
 
 static inline glint_value apply(glint_builder *b, glint_op op, glint_value x, glint_value y)
