@@ -9,6 +9,7 @@
 
 #include <glint.h>
 #include <glint_files.h>
+#include <glint_inspect.h>
 #include <glint_programs.h>
 
 static glint_error error;
