@@ -12,6 +12,7 @@
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
 
+#include <errno.h>
 #include <math.h>
 
 #define SIDE_MAX 32767 ///< longest side of a cairo image, pixels
@@ -19,9 +20,17 @@
 typedef struct pdf {
     cairo_t *cairo;
     const glint_figure *figure;
+    cairo_surface_t *colors, *mask; ///< pixels; the page reads them when it is finished
     cairo_font_face_t *face; ///< font of all texts; NULL: no text so far
     bool lost; ///< out of memory outside of cairo
 } pdf;
+
+/// Notes a failed allocation that cairo 1.16 keeps to itself: errno still tells it.
+static void note_lost(pdf *p)
+{
+    p->lost = p->lost || errno == ENOMEM;
+    errno = 0;
+}
 
 // ---- Pixels -------------------------------------------------------------------------------------------------------
 
@@ -41,7 +50,7 @@ static void copy_rows(pdf *p, cairo_surface_t *colors, cairo_surface_t *mask)
     const glint_png_source *source = p->figure->source;
     uint8_t *scratch = malloc((size_t)source->width * 4), *alpha = mask ? cairo_image_surface_get_data(mask) : NULL;
     uint8_t *out = cairo_image_surface_get_data(colors);
-    p->lost = p->lost || !scratch;
+    p->lost = p->lost || !scratch || cairo_surface_status(colors) || (mask && cairo_surface_status(mask));
     for (int y = 0; y < source->height && scratch && out && (alpha || !mask); y++) {
         copy_row(source, source->row(source->user, y, scratch), (uint32_t *)(void *)out, alpha);
         out += cairo_image_surface_get_stride(colors);
@@ -53,6 +62,32 @@ static void copy_rows(pdf *p, cairo_surface_t *colors, cairo_surface_t *mask)
         cairo_surface_mark_dirty(mask);
 }
 
+static cairo_surface_t *acquire(cairo_pattern_t *pattern, void *pixels, cairo_surface_t *target,
+                                const cairo_rectangle_int_t *part)
+{
+    (void)pattern, (void)target, (void)part;
+    return cairo_surface_reference(pixels);
+}
+
+static void let_go(cairo_pattern_t *pattern, void *pixels, cairo_surface_t *acquired)
+{
+    (void)pattern, (void)pixels;
+    cairo_surface_destroy(acquired);
+}
+
+/// Returns the pixels as a pattern at the picture's place. cairo 1.16 would copy a surface when it is destroyed, and
+/// crash if it has no memory for that.
+static cairo_pattern_t *pattern_of(const pdf *p, cairo_surface_t *pixels, cairo_content_t content)
+{
+    cairo_matrix_t place;
+    cairo_pattern_t *pattern =
+        cairo_pattern_create_raster_source(pixels, content, p->figure->source->width, p->figure->source->height);
+    cairo_matrix_init_translate(&place, -p->figure->x, -p->figure->y);
+    cairo_pattern_set_matrix(pattern, &place);
+    cairo_raster_source_pattern_set_acquire(pattern, acquire, let_go);
+    return pattern;
+}
+
 /// Draws the picture. Its alpha is a mask, because cairo's pixels with alpha are products and would lose bits of the
 /// colours.
 static void draw_picture(pdf *p)
@@ -62,14 +97,21 @@ static void draw_picture(pdf *p)
     cairo_surface_t *mask =
         source->alpha ? cairo_image_surface_create(CAIRO_FORMAT_A8, source->width, source->height) : NULL;
     copy_rows(p, colors, mask);
-    cairo_set_source_surface(p->cairo, colors, p->figure->x, p->figure->y);
-    cairo_pattern_set_filter(cairo_get_source(p->cairo), CAIRO_FILTER_NEAREST); // readers show the pixel values
-    if (mask)
-        cairo_mask_surface(p->cairo, mask, p->figure->x, p->figure->y);
-    else
+    p->colors = colors;
+    p->mask = mask;
+    if (p->lost)
+        return;
+    cairo_pattern_t *color = pattern_of(p, colors, CAIRO_CONTENT_COLOR);
+    cairo_pattern_set_filter(color, CAIRO_FILTER_NEAREST); // readers show the pixel values
+    cairo_set_source(p->cairo, color);
+    cairo_pattern_destroy(color);
+    if (mask) {
+        cairo_pattern_t *alpha = pattern_of(p, mask, CAIRO_CONTENT_ALPHA);
+        cairo_mask(p->cairo, alpha);
+        cairo_pattern_destroy(alpha);
+    } else {
         cairo_paint(p->cairo);
-    cairo_surface_destroy(colors);
-    cairo_surface_destroy(mask);
+    }
 }
 
 // ---- Marks --------------------------------------------------------------------------------------------------------
@@ -243,6 +285,7 @@ static void draw_marks(pdf *p)
         set_color(p, mark);
         draws[mark->kind](p, mark);
         cairo_restore(p->cairo);
+        note_lost(p);
     }
 }
 
@@ -305,18 +348,23 @@ glint_status glint_pdf_encode(const glint_figure *figure, const glint_png_desc *
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE,
                                    ""); // no date, so that equal figures have equal bytes
     pdf p = { .cairo = cairo_create(surface), .figure = figure };
+    errno = 0;
     set_options(p.cairo);
     cairo_scale(p.cairo, unit, unit);
     cairo_translate(p.cairo, -figure->x, -figure->y);
     draw_picture(&p);
+    note_lost(&p);
     if (figure->ink)
         draw_marks(&p);
     cairo_show_page(p.cairo);
     cairo_surface_finish(surface);
+    note_lost(&p);
     status = status_of(&p, surface, error);
     cairo_font_face_destroy(p.face);
     cairo_destroy(p.cairo);
     cairo_surface_destroy(surface);
+    cairo_surface_destroy(p.colors);
+    cairo_surface_destroy(p.mask);
     return status;
 }
 

@@ -130,6 +130,10 @@ for kind in alloc write; do
     STEP=$((7 * ${STEP:-7})) each $kind "the dialect" --dialect gr room.lua -t 1 -q # each run compiles it again
     each $kind "an array" film.lua -f 1 -o out/n.npy -t 1 -q
     each $kind "vectors" still.lua -o out/w.svg -t 1 -q
+    if "$glint" --version --verbose | grep -q cairo; then
+        each $kind "letters of a page" still.lua -o out/w.pdf -t 1 -q
+        each $kind "a sheet's page" sheet f_1.png f_2.png -o out/sheet.pdf -q --title 'a $\hat n$'
+    fi
     if "$glint" --version --verbose | grep -q '\.exr'; then
         each $kind "channels" film.lua -f 1 -o out/c.exr --passes depth -t 1 -q
     fi
