@@ -187,10 +187,34 @@ static void put_position(svg *s, const glint_run *run, double x, double y)
     put_string(s, ")\"");
 }
 
+static void put_outline(void *context, char command, int count, const double points[3][2])
+{
+    svg *s = context;
+    put_point(s, command, points[0][0], points[0][1]);
+    for (int i = 1; i < count; i++)
+        put_point(s, ' ', points[i][0], points[i][1]);
+}
+
+static void put_accent(svg *s, const glint_ink_mark *mark, const glint_run *accent, double x, double y)
+{
+    glint_run run = *accent;
+    run.x += x;
+    run.y += y;
+    put_string(s, "<path d=\"");
+    glint_letters_outline(mark->typeface.letters, &run, put_outline, s);
+    put_string(s, "\"");
+    put_color(s, "fill", mark->color);
+    put_string(s, "/>\n");
+}
+
 /// Puts a run. With another font than glint's, the reader's program fits it into the same width.
 static void put_run(svg *s, const glint_ink_mark *mark, const glint_run *run, double x, double y)
 {
     const glint_letters *letters = mark->typeface.letters;
+    if (run->is_accent && letters) {
+        put_accent(s, mark, run, x, y);
+        return;
+    }
     put_string(s, "<text");
     put_position(s, run, x, y);
     put_font(s, letters, run);

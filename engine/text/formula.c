@@ -102,15 +102,30 @@ static glint_style script_style(glint_style st)
     return (glint_style) { st.level < GLINT_LEVEL_SCRIPT ? GLINT_LEVEL_SCRIPT : GLINT_LEVEL_SCRIPT_OF_SCRIPT, st.letters };
 }
 
+/// Sets a prime in a superscript as large and as high as the sign ' next to a letter.
+static atom set_prime(glint_setter *s, glint_style st, const char *text)
+{
+    const double em = glint_setter_em(s, st.level == GLINT_LEVEL_SCRIPT ? GLINT_LEVEL_TEXT : GLINT_LEVEL_SCRIPT);
+    const double y = floor(UP * em + 0.5);
+    atom a = { GLINT_ATOM_ORDINARY, glint_setter_run(s, (glint_run) { text, strlen(text), 0, 0, em, 0, 1, false, false }) };
+    glint_box_move(s, &a.box, 0, y);
+    a.box.above -= y;
+    a.box.below += y;
+    return a;
+}
+
 static atom set_symbol(glint_setter *s, glint_style st, const glint_symbol *symbol)
 {
+    const char *text = glint_setter_text(s, symbol);
     atom a = { symbol->atom, { .width = 0 } };
+    if (st.level >= GLINT_LEVEL_SCRIPT && strcmp(symbol->name, "prime") == 0)
+        return set_prime(s, st, text);
     if (!symbol->is_large || st.level != GLINT_LEVEL_DISPLAY) {
-        a.box = glint_setter_letters(s, st, symbol->text, strlen(symbol->text), symbol->is_variable);
+        a.box = glint_setter_letters(s, st, text, strlen(text), symbol->is_variable);
         return a;
     }
     const double em = LARGE * glint_setter_em(s, st.level);
-    a.box = glint_setter_run(s, (glint_run) { symbol->text, strlen(symbol->text), 0, 0, em, 0, 1, false });
+    a.box = glint_setter_run(s, (glint_run) { text, strlen(text), 0, 0, em, 0, 1, false, false });
     const double y = floor((a.box.above - a.box.below) / 2 - glint_setter_axis(s, st.level) + 0.5);
     glint_box_move(s, &a.box, 0, y);
     a.box.above -= y;
@@ -122,9 +137,9 @@ static atom set_symbol(glint_setter *s, glint_style st, const glint_symbol *symb
 /// Returns the width of a space command in font sizes; 0: it is none.
 static double space_of(const char *name, size_t size)
 {
-    static const char *const names[] = { ",", ";", "quad" };
-    static const double spaces[] = { 3 / 18.0, 5 / 18.0, 1 };
-    for (int i = 0; i < 3; i++)
+    static const char *const names[] = { ",", ";", "quad", ":", ">", "!", " ", "qquad" };
+    static const double spaces[] = { 3 / 18.0, 5 / 18.0, 1, 4 / 18.0, 4 / 18.0, -3 / 18.0, 1 / 3.0, 2 };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (glint_symbol_is(names[i], name, size))
             return spaces[i];
     return 0;
@@ -139,13 +154,21 @@ static atom set_command(glint_setter *s, glint_style st)
     atom a = { GLINT_ATOM_SPACE, glint_box_begin(s) };
     s->at += 1 + size;
     a.box.width = space * glint_setter_em(s, st.level);
-    if (space > 0)
+    if (space != 0)
         return a;
     if (symbol)
         return set_symbol(s, st, symbol);
     if (!glint_setter_construct(s, st, at, size, &a.kind, &a.box))
         glint_setter_fail(s, at, "expected a command that formulas have, got \\%.*s", (int)(size < 40 ? size : 40), at + 1);
     return a;
+}
+
+/// Skips \limits and \nolimits: limits are next to large operators.
+static void skip_limits(glint_setter *s)
+{
+    for (glint_setter_skip_blanks(s); glint_setter_is_command(s, "limits") || glint_setter_is_command(s, "nolimits");
+         glint_setter_skip_blanks(s))
+        s->at += 1 + command_size(s->at, s->end);
 }
 
 /// Sets digits with a decimal point.
@@ -164,6 +187,8 @@ static atom set_character(glint_setter *s, glint_style st)
     const size_t size = glint_setter_sign_size(first, s->end);
     const glint_symbol *symbol = glint_symbol_find(false, first, size);
     s->at += size;
+    if (*first == '~')
+        return (atom) { GLINT_ATOM_SPACE, { .width = space_of(" ", 1) * glint_setter_em(s, st.level) } };
     if (symbol)
         return set_symbol(s, st, symbol);
     if (is_letter(*first) || (unsigned char)*first >= 0x80)
@@ -225,7 +250,7 @@ static atom set_atom(glint_setter *s, glint_style st)
     atom a = set_nucleus(s, st);
     glint_box scripts[2] = { { .width = 0 }, { .width = 0 } };
     bool has[2] = { false, false };
-    for (glint_setter_skip_blanks(s); s->at < s->end && (*s->at == '^' || *s->at == '_'); glint_setter_skip_blanks(s)) {
+    for (skip_limits(s); s->at < s->end && (*s->at == '^' || *s->at == '_'); glint_setter_skip_blanks(s)) {
         const char *sign = s->at++;
         const int i = *sign == '_';
         if (has[i]) {

@@ -324,6 +324,56 @@ void glint_letters_draw(glint_letters *letters, const glint_run *run, glint_mask
         }
 }
 
+// ---- Outlines ----
+
+typedef struct outline {
+    glint_outline_part *put;
+    void *context;
+    double x, y; ///< where the letter begins, pixels
+} outline;
+
+static int put_part(const outline *o, char command, int count, const FT_Vector *const at[3])
+{
+    double points[3][2] = { { 0 } };
+    for (int i = 0; i < count; i++) {
+        points[i][0] = o->x + (double)at[i]->x / 64;
+        points[i][1] = o->y - (double)at[i]->y / 64;
+    }
+    o->put(o->context, command, count, (const double(*)[2])points);
+    return 0;
+}
+
+static int put_move(const FT_Vector *to, void *o) { return put_part(o, 'M', 1, (const FT_Vector *[3]) { to }); }
+
+static int put_line(const FT_Vector *to, void *o) { return put_part(o, 'L', 1, (const FT_Vector *[3]) { to }); }
+
+static int put_conic(const FT_Vector *by, const FT_Vector *to, void *o)
+{
+    return put_part(o, 'Q', 2, (const FT_Vector *[3]) { by, to });
+}
+
+static int put_cubic(const FT_Vector *first, const FT_Vector *second, const FT_Vector *to, void *o)
+{
+    return put_part(o, 'C', 3, (const FT_Vector *[3]) { first, second, to });
+}
+
+void glint_letters_outline(glint_letters *letters, const glint_run *run, glint_outline_part *put, void *context)
+{
+    static const FT_Outline_Funcs parts = { put_move, put_line, put_conic, put_cubic, 0, 0 };
+    const char *text = run->text, *end = text + strnlen(text, run->size);
+    pen at = { .x = run->x };
+    set_size(letters, run->em);
+    while (text < end)
+        if (next_letter(letters, &text, &at)) {
+            const double advance = advance_of(letters, run);
+            FT_Outline *shape = shape_letter(letters, run);
+            outline o = { put, context, at.x, run->y };
+            if (shape && FT_Outline_Decompose(shape, &parts, &o))
+                letters->lost = true;
+            at.x += advance;
+        }
+}
+
 static char library_name[48];
 
 // Stores the version of the library in use or, without memory to start it, the version compiled against.
@@ -411,6 +461,11 @@ glint_run_box glint_letters_box(glint_letters *letters, const glint_run *run)
 {
     (void)letters, (void)run;
     return (glint_run_box) { 0 };
+}
+
+void glint_letters_outline(glint_letters *letters, const glint_run *run, glint_outline_part *put, void *context)
+{
+    (void)letters, (void)run, (void)put, (void)context;
 }
 
 void glint_letters_draw(glint_letters *letters, const glint_run *run, glint_mask *mask)

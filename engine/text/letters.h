@@ -25,6 +25,7 @@ typedef struct glint_run {
     double slant; ///< pixels to the right for each pixel of height; 0: upright
     double stretch; ///< factor of the letters' height; 1: none
     bool bold;
+    bool is_accent; ///< a sign above a letter, which an .svg draws as a path: alone it may be a combining character
 } glint_run;
 
 /// The rectangle that the letters of a run cover: distances from the left end of the baseline, pixels.
@@ -78,6 +79,10 @@ bool glint_letters_has(const glint_letters *letters, uint32_t code);
 double glint_letters_advance(glint_letters *letters, const glint_run *run);
 /// Returns the rectangle that a run covers; all zero for a run without visible letters.
 glint_run_box glint_letters_box(glint_letters *letters, const glint_run *run);
+/// Takes a part of an outline: `command` is M, L, Q or C as in SVG, with 1, 1, 2 or 3 points.
+typedef void glint_outline_part(void *context, char command, int count, const double points[3][2]);
+/// Calls `put` for the outline of each letter of a run at its x and y; pixels, y downwards.
+void glint_letters_outline(glint_letters *letters, const glint_run *run, glint_outline_part *put, void *context);
 /// Draws a run into the mask, clipped to the mask. The baseline is the upper edge of row y.
 void glint_letters_draw(glint_letters *letters, const glint_run *run, glint_mask *mask);
 

@@ -12,7 +12,14 @@ typedef enum glint_level {
     GLINT_LEVEL_SCRIPT_OF_SCRIPT,
 } glint_level;
 
-typedef enum glint_letter_style { GLINT_LETTERS_ITALIC, GLINT_LETTERS_UPRIGHT, GLINT_LETTERS_BOLD } glint_letter_style;
+typedef enum glint_letter_style {
+    GLINT_LETTERS_ITALIC,
+    GLINT_LETTERS_UPRIGHT,
+    GLINT_LETTERS_BOLD,
+    GLINT_LETTERS_BOLD_ITALIC,
+    GLINT_LETTERS_CALLIGRAPHIC,
+    GLINT_LETTERS_DOUBLE, ///< double-struck
+} glint_letter_style;
 
 typedef struct glint_style {
     glint_level level;
@@ -57,6 +64,8 @@ void glint_box_add(glint_box *to, const glint_box *box, double y);
 void glint_setter_rule(glint_setter *s, double x, double y, double width, double height);
 /// Adds a run of letters at the origin. Returns its box; the run is the last one of the line.
 glint_box glint_setter_run(glint_setter *s, glint_run run);
+/// Returns the text that the font can draw for a symbol.
+const char *glint_setter_text(const glint_setter *s, const glint_symbol *symbol);
 /// Adds letters in a style. is_variable  slanted in italic style.
 glint_box glint_setter_letters(glint_setter *s, glint_style style, const char *text, size_t size, bool is_variable);
 

@@ -21,6 +21,7 @@ typedef enum glint_atom {
 typedef struct glint_symbol {
     const char *name; ///< the command without its backslash, or the sign itself
     const char *text; ///< what is drawn, UTF-8
+    const char *plain; ///< drawn instead by a font that lacks it; NULL: `text`
     glint_atom atom;
     bool is_variable; ///< drawn slanted, as a letter
     bool is_large; ///< a large operator

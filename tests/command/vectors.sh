@@ -86,6 +86,24 @@ check "a formula names an axis" grep -q '> */ m<' chart.svg
 echo 'local c = dofile "chart.lua" return { c, c }' >two.lua
 "$glint" -q two.lua -o 'two_%d.svg'
 check "a chart in a list" cmp <(grep '<text' two_2.svg) <(grep '<text' chart.svg)
+cat >accents.lua <<'LUA'
+local glint = require "glint"
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+scene:add(glint.label { text = "$\\vec n \\hat n \\dot n \\ddot n \\tilde n$", size = 40 })
+return scene
+LUA
+"$glint" -q accents.lua -o accents.svg --size 320x100
+check "no combining sign stands alone" bash -c '! grep -q "$(printf "\342\203\227")" accents.svg'
+if [ -n "${GLINT_FONT:-}" ]; then
+    check "accents are paths" test "$(grep -c '<path d="M' accents.svg)" -eq 5
+    "$glint" -q accents.lua -o accents.png --size 320x100
+    drawn_accents() {
+        rsvg-convert -w 320 -h 100 accents.svg -o drawn.png && "$glint" compare accents.png drawn.png --json | "${LUA:-lua5.4}" -e '
+            local rms = tonumber(io.read("a"):match "\"rms_error\":([%d.e-]+)")
+            assert(rms and rms < 0.05, rms)'
+    }
+    has rsvg-convert && check "an .svg with accents looks like its .png" drawn_accents
+fi
 refuse_overlay() { echo 'return require("glint").label { text = "a" }' >label.lua && refuses 'a scene, a chart or a list' label.lua -o none.svg; }
 check "another overlay is refused" refuse_overlay
 

@@ -140,6 +140,13 @@ static void test_spaces(void **state)
         { "$a\\le b$", 3, 10 },
         { "$a\\to\\infty$", 3, 10 },
         { "$2\\times 3$", 3, 8 },
+        { "$a\\mapsto b$", 3, 10 },
+        { "$a\\equiv b$", 3, 10 },
+        { "$\\operatorname{max} x$", 4, 3 },
+        { "$a\\mp b$", 4, 8 }, // the bitmap font has no such sign, and draws -+
+        { "$a\\ b~c$", 3, 12 },
+        { "$a\\!b\\:c$", 3, 4 - 3 },
+        { "$\\lvert x\\rvert$", 3, 0 },
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double width = cases[i].letters * LETTER + cases[i].eighteenths / 18 * EM;
@@ -167,6 +174,37 @@ static void test_roots_and_accents(void **state)
     assert_true(line.runs[1].y < low);
     set("$\\bar{AB}$");
     assert_true(line.rule_count == 1 && line.rules[0].width == 2 * LETTER && line.rules[0].y < -0.7 * EM);
+}
+
+/// Commands of lecture notes: every one is set; digits and primes as TeX takes them.
+static void test_lecture_notes(void **state)
+{
+    (void)state;
+    static const char *const formulas[] = {
+        "$\\mathcal{L}$", "$\\langle n, l \\rangle$", "$\\lVert x \\rVert$", "$\\binom{n}{k}$", "$\\prod_i x_i$", "$a \\ll b$",
+        "$\\mathbb{R}^3$", "$\\boldsymbol{n}$", "$a \\sim b$", "$\\tfrac12$", "$\\ell$", "$\\mp 1$", "$a\\ b$", "$f'$",
+        "$f^\\prime$", "$A^\\dagger$", "$\\operatorname{max}$", "$\\lfloor x \\rfloor$", "$\\frac12$", "$\\sum\\limits_{i=1}^n x$",
+        "$\\left\\langle x \\right\\rangle$", "$\\bigl( x \\bigr)$", "$\\forall x \\in A \\Rightarrow x \\notin B$",
+        "$\\overline{AB} \\underline{x}$", "$\\ddot x \\widehat{ab}$", "$\\operatorname*{argmax}_x f$", "$\\textbf{a b}$",
+    };
+    for (size_t i = 0; i < sizeof formulas / sizeof *formulas; i++)
+        set(formulas[i]);
+    assert_string_equal(pieces("$\\frac12$"), "1|2");
+    assert_int_equal(line.rule_count, 1);
+    assert_string_equal(pieces("$\\tfrac12 3$"), "1|2|3");
+    assert_true(line.runs[0].em == SCRIPT && line.runs[2].em == EM);
+    assert_string_equal(pieces("$\\binom nk$"), "(|n|k|)");
+    assert_true(line.rule_count == 0 && line.runs[0].stretch > 1.5 && line.runs[1].x == line.runs[2].x);
+    set("$f'$");
+    const double x = line.runs[1].x, width = line.width;
+    set("$f^\\prime$");
+    assert_true(line.runs[1].em == EM && line.runs[1].y == 0 && line.runs[1].x == x && line.width <= width + 0.05 * EM + 1);
+    set("$\\mathbb{R}$"); // a bold letter instead of one that the font lacks
+    assert_true(is_run(0, "R") && line.runs[0].bold);
+    set("$\\big(x\\Big($");
+    assert_true(line.runs[0].stretch > 1 && line.runs[2].stretch > line.runs[0].stretch);
+    set("$\\overline{AB}$");
+    assert_true(line.rule_count == 1 && line.rules[0].x == 0 && line.rules[0].width == 2 * LETTER);
 }
 
 /// \left and \right cover the part between them.
@@ -202,7 +240,7 @@ static void test_faults(void **state)
         { "$x}$", "text: expected a { for each }, got a } at character 3" },
         { "$\\left(x$", "text: expected a \\right for the \\left, got none at character 2" },
         { "$x\\right)$", "text: expected a \\left for each \\right, got a \\right at character 3" },
-        { "$\\left x\\right)$", "text: expected one of ( ) [ ] | / . \\{ \\} \\| after \\left at character 2" },
+        { "$\\left x\\right)$", "text: expected a delimiter such as ( ] | . \\{ \\| \\langle \\rfloor after \\left at character 2" },
         { "$\\sqrt[3{x}$", "text: expected a ] for the [, got none at character 7" },
         { "$\\text x$", "text: expected {...} after \\text at character 2" },
         { "$\\text{\\alpha}$", "text: expected only letters in \\text{...}, got \\ at character 8" },
@@ -272,7 +310,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_dollars),           cmocka_unit_test(test_fraction), cmocka_unit_test(test_scripts),
         cmocka_unit_test(test_spaces),            cmocka_unit_test(test_faults),   cmocka_unit_test(test_blanks),
-        cmocka_unit_test(test_roots_and_accents), cmocka_unit_test(test_fences),   cmocka_unit_test(test_drawing)
+        cmocka_unit_test(test_roots_and_accents), cmocka_unit_test(test_fences),
+        cmocka_unit_test(test_lecture_notes),   cmocka_unit_test(test_drawing)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

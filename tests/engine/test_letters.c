@@ -26,7 +26,7 @@ static glint_mask draw(const glint_typeface *typeface, const char *text, int x, 
 {
     glint_mask mask = { width, height, calloc((size_t)width, (size_t)height) };
     assert_non_null(mask.coverage);
-    const glint_run run = { text, SIZE_MAX, x, y + typeface->above, typeface->em, 0, 1, false };
+    const glint_run run = { text, SIZE_MAX, x, y + typeface->above, typeface->em, 0, 1, false, false };
     glint_typeface_draw(typeface, &run, &mask);
     return mask;
 }
