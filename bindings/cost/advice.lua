@@ -3,9 +3,11 @@
 local the = ...
 local format, log = string.format, math.log
 
-local SAVING <const> = 0.8 -- a saving is advised if it takes at most this share of the time
+local SAVING <const> = log(0.8) -- a saving is advised if it takes at most this share of the time
 local GAIN <const> = log(0.8) -- a step to more accuracy is advised if it leaves at most this share of the error
-local CLEARLY <const> = log(1.25) -- a step must be worth so much more than the first
+local CLEARLY <const> = 1.25 -- a step must be worth so many times as much as the first
+local RUNS_MAX <const>, LEAST_SHARE <const> = 1000, 0.25 -- runs of a setting; of a doubling that is worth its time
+local EXACTLY <const> = log(1.25) -- the stated share of the error may be off by so much
 local SAME <const>, HOUR_MS <const> = log(1.05), 3600e3
 
 local SHARES <const> = { { 1 / 2, "half the" }, { 1 / 3, "a third of the" }, { 2 / 3, "two thirds of the" },
@@ -21,26 +23,31 @@ end
 
 local function step_of(row) return row.knob .. " " .. row.own_label .. " -> " .. row.label end
 
-local function sentence(study, row)
-  return format("%s: %s time, %s error", step_of(row), spell_share(row.case.time.median / study.own.time.median),
-    row.verdict == "equal" and "the same" or spell_share(row.case.film.rmse / study.own.film.rmse))
+local function sentence(row)
+  return format("%s: %s time, %s error", step_of(row), spell_share(row.x_own),
+    row.verdict == "equal" and "the same" or spell_share(math.exp(row.average)))
 end
 
 -- ---- The choice ----
 
 -- Returns the row that no other beats; of rows that are about as good, the first. beats(a, b): nil if not decided,
--- which adds to the doubts. candidates: { row, is_certain }.
+-- which makes them rivals: both are in doubt. candidates: { row, is_certain }.
 local function choose(candidates, beats, doubts)
   local best
-  for _, candidate in ipairs(candidates) do
-    if candidate[2] then
-      local wins = not best or beats(candidate[1], best)
-      if wins == nil then doubts[#doubts + 1] = candidate[1] end
-      if wins then best = candidate[1] end
-    end
+  local function doubt(row, rivals)
+    row.is_rival = rivals
+    doubts[#doubts + 1] = row
   end
-  for _, candidate in ipairs(candidates) do
-    if not candidate[2] and (not best or beats(candidate[1], best) ~= false) then doubts[#doubts + 1] = candidate[1] end
+  for _, is_certain in ipairs { true, false } do
+    for _, candidate in ipairs(candidates) do
+      local row, wins = candidate[1], not best
+      if candidate[2] == is_certain then
+        if best then wins = beats(row, best) end
+        if wins == nil then doubt(best, true) end
+        if wins == nil or (wins and not is_certain) then doubt(row, wins == nil) end
+        if wins and is_certain then best = row end
+      end
+    end
   end
   return best
 end
@@ -59,45 +66,48 @@ local function list(rows, test)
   return out
 end
 
--- Returns the nearest of each knob's candidates: the one that changes the time least.
+-- Returns the nearest of each knob's candidates: its row is next to the script's own, or not far from it.
 local function nearest(candidates)
   local out, at = {}, {}
   for _, candidate in ipairs(candidates) do
     local row, i = candidate[1], at[candidate[1].knob]
-    local far = math.abs(log(row.case.time.median / row.own_case.time.median))
-    if not i or far < out[i].far then
+    if not i or row.far < out[i][1].far then
       i = i or #out + 1
-      out[i], at[row.knob] = { row, candidate[2], far = far }, i
+      out[i], at[row.knob] = candidate, i
     end
   end
   return out
 end
 
--- Returns the accuracy gained for the time, and how far its logarithm may be off.
+-- Returns the least and the most accuracy that is gained for the time.
 local function worth(row)
-  local cost = math.max(log(row.case.time.median / row.own_case.time.median), 0.1)
-  return math.max(-row.average, 1e-3) / cost, row.margin / math.max(-row.average, 1e-3) + 0.03 / cost
+  local function cost(margin) return math.max(row.time + margin, 0.1) end
+  return math.max(-row.average - row.margin, 1e-3) / cost(row.time_margin),
+    math.max(-row.average + row.margin, 1e-3) / cost(-row.time_margin)
 end
 
 local function is_worth_more(a, b)
-  local of_a, doubt_a = worth(a)
-  local of_b, doubt_b = worth(b)
-  return the.is_below(log(of_b / of_a), math.sqrt(doubt_a ^ 2 + doubt_b ^ 2), -CLEARLY)
+  local least_a, most_a = worth(a)
+  local least_b, most_b = worth(b)
+  if least_a >= CLEARLY * most_b then return true elseif most_a < CLEARLY * least_b then return false end
 end
+
+local function saves(row) return the.is_below(row.time, row.time_margin, SAVING) end
 
 -- Returns the advised row, or the rows whose order is not decided.
 local function advised(study, rows)
-  local own, doubts = study.own, {}
-  local function saves(row) return the.is_faster(row.case, own, SAVING) end
-  local row = choose(list(rows, function(r) return both(r.is_as_good, saves(r)) end),
-    function(a, b) return the.is_faster(a.case, b.case, SAVING) end, doubts)
+  local doubts = {}
+  local row = choose(list(rows, function(r) return both(r.is_as_good, saves(r)) end), function(a, b)
+    local time, margin = the.compare_times(a.case, b.case)
+    return the.is_below(time, margin, SAVING)
+  end, doubts)
   if #doubts > 0 or row then return row, doubts end
   row = choose(nearest(list(rows, function(r) return not r.loss and the.is_below(r.average, r.margin, GAIN) end)),
     is_worth_more, doubts)
   if #doubts > 0 or row then return row, doubts end
   row = choose(nearest(list(rows, function(r) return not r.loss and saves(r) end)), function(a, b)
     local average, margin = the.compare(study, a.case, b.case)
-    return the.is_below(average, margin, -CLEARLY)
+    return the.is_below(average, margin, -log(CLEARLY))
   end, doubts)
   return row, doubts
 end
@@ -110,14 +120,23 @@ local function spell_ms(ms)
     or format("about %.0f minutes", math.ceil(ms / 60e3))
 end
 
--- Returns the time that pictures would take until the rows' errors are decided. The margin falls with the root of
--- their number.
+-- Returns whether pictures and whether timed runs can decide about the row: what is near to a limit; both for rivals.
+local function wants(row)
+  local time = saves(row) == nil
+  local error = the.is_below(row.average, row.margin, SAME) == nil or the.is_below(row.average, row.margin, GAIN) == nil
+  return error or row.is_rival or not time, time or row.is_rival or not error
+end
+
+-- Returns the time until the rows are decided. Margins fall with the root of the number of pictures and runs.
 local function deciding_ms(study, doubts)
   local sum = 0
+  local function times(margin, off) return math.max(margin / math.max(off, 1e-3), 1.5) ^ 2 - 1 end
   for _, row in ipairs(doubts) do
-    local off = math.max(math.min(math.abs(row.average - SAME), math.abs(row.average - GAIN)), 1e-3)
-    local more = #row.case.squares * (math.max(row.margin / off, 1.5) ^ 2 - 1)
-    sum = sum + more * (row.case.frame_ms + study.own.frame_ms)
+    local case, pictures, runs = row.case, wants(row)
+    local off = math.min(math.abs(row.average - SAME), math.abs(row.average - GAIN))
+    sum = sum + (pictures and #case.squares * times(row.margin, off) * (case.frame_ms + study.own.frame_ms) or 0)
+      + (runs and case.runs * times(row.time_margin, math.abs(row.time - SAVING))
+        * (case.estimate_ms + study.own.estimate_ms) or 0)
   end
   return sum
 end
@@ -143,30 +162,44 @@ function the.advise(study)
   end
   local row, doubts = advised(study, rows)
   if #doubts > 0 then
-    return { doubts = doubts, text = format("not decided: %s: too close after %d pictures of each; deciding would "
-      .. "take %s more", names_of(doubts), #doubts[1].case.squares, spell_ms(deciding_ms(study, doubts))) }
+    return { doubts = doubts, text = format("not decided: %s: too close after %d pictures and %d runs of each; "
+      .. "deciding would take %s more", names_of(doubts), #doubts[1].case.squares, doubts[1].case.runs,
+      spell_ms(deciding_ms(study, doubts))) }
   end
-  return { doubts = {}, decided = true, row = row, text = row and sentence(study, row)
+  return { doubts = {}, decided = true, row = row, text = row and sentence(row)
     or "keep the script's setting: no setting here saves a fifth of the time or a fifth of the error" }
 end
 
--- Renders and times the settings in doubt again, until the advice is decided or the time is over.
+-- Renders the case with more seeds: `share` of those up to `count`.
+local function add_pictures(study, case, count, share)
+  for _ = 1, (count - #case.squares) * share // the.PICTURES do
+    the.tools.show("deciding", case.frame_ms, 0)
+    the.replicate(study, case)
+  end
+end
+
+-- Doubles the pictures or the timed runs of the settings in doubt, or adds what there is time for, until the advice is
+-- decided, and its share of the error is known.
 function the.decide(study, until_ms)
   while true do
     the.judge(study)
-    local cases, ms, seen = {}, 0, {}
-    for _, row in ipairs(study.advice.doubts) do
-      for _, case in ipairs { study.own, row.case } do
-        if not seen[case] and #case.squares < the.PICTURES_MAX then
-          cases[#cases + 1], seen[case], ms = case, true, ms + the.PICTURES * case.frame_ms + case.estimate_ms
-        end
+    local advice, own, timed, pictures, most, ms = study.advice, study.own, {}, {}, 0, 0
+    local best = advice.row
+    for _, row in ipairs(best and best.margin > EXACTLY and { best } or advice.doubts) do
+      local case, is_error, is_time = row.case, wants(row)
+      local count = 2 * #case.squares
+      if (best or is_error) and count <= the.PICTURES_MAX then
+        pictures[case], most, ms = count, math.max(most, count), ms + #case.squares * case.frame_ms
+      end
+      if not best and is_time and case.runs < RUNS_MAX then
+        timed[#timed + 1], ms = case, ms + case.runs * case.estimate_ms
       end
     end
-    if #cases == 0 or the.tools.now() + ms > until_ms then return end
-    for _, case in ipairs(cases) do
-      the.tools.show("deciding", ms, 0)
-      the.replicate(study, case)
-      the.run(case)
-    end
+    if most > #own.squares then pictures[own], ms = most, ms + (most - #own.squares) * own.frame_ms end
+    if #timed > 0 then timed[#timed + 1], ms = own, ms + timed[1].runs * own.estimate_ms end
+    local share = math.min((until_ms - the.tools.now()) / ms, 1)
+    if ms == 0 or share < LEAST_SHARE then return end
+    for case, count in pairs(pictures) do add_pictures(study, case, count, share) end
+    if #timed > 0 then the.run_rounds(study, timed, math.ceil(timed[1].runs * share), "deciding") end
   end
 end

@@ -7,7 +7,7 @@ local TIMES <const> = 32 -- samples of each part, relative to the script's
 local LEAST_TIMES <const> = 2 -- minimum of TIMES if a budget forces fewer; with fewer the errors mean nothing
 local BATCH_MAX <const> = 1000 -- frames in a run
 the.PICTURES = 3 -- pictures of each setting, with different seeds; as many more at a time, up to
-the.PICTURES_MAX = 300
+the.PICTURES_MAX = 384
 
 -- ---- The reference ----
 
@@ -104,7 +104,6 @@ function the.replicate(study, case, image)
     end
   end
   for i = image and 2 or 1, #images do the.tools.close(images[i]) end
-  the.split_error(study, case)
 end
 
 local function find_errors(study, case, image)

@@ -28,7 +28,8 @@ end
 local function judge_row(study, row)
   local case, own = row.case, study.own
   local difference = time_of(row) - own.time.median
-  row.x_own = time_of(row) / own.time.median
+  row.time, row.time_margin = the.compare_times(case, own)
+  row.x_own = math.exp(row.time)
   row.resolved = row.error ~= nil and row.error.rmse >= RESOLVED * study.reference.rmse
   row.partial = not row.error or (not case.left_out and case.runs < study.runs) or case.is_first_alone
   row.difference = math.abs(difference) <= math.max(case.quartile_range, own.quartile_range) and 0

@@ -229,29 +229,28 @@ static glint_status time_frame(cost_study *study, const planned *p, times *sum, 
     return GLINT_OK;
 }
 
+// Sets the field `name` of the table on top of the stack to a table of the counts.
+static void set_counts(lua_State *L, const char *name, const char *const *names, const uint64_t *counts)
+{
+    lua_newtable(L);
+    for (size_t i = 0; names[i]; i++)
+        glintL_set_whole(L, names[i], (lua_Integer)counts[i]);
+    lua_setfield(L, -2, name);
+}
+
 static void push_stats(lua_State *L, const glint_frame_stats *stats)
 {
-    const glint_ray_counts *counts = &stats->rays;
-    const glint_work *work = &stats->work;
+    static const char *const RAYS[] = { "primary", "shadow", "mirror", "refraction", "indirect", NULL };
+    static const char *const WORK[] = { "tests", "light_samples", "powers", "sites", "overlaps", "lights_seen", NULL };
+    const glint_ray_counts *r = &stats->rays;
+    const glint_work *w = &stats->work;
     lua_newtable(L);
     glintL_set_number(L, "render_ms", stats->render_ms);
     glintL_set_number(L, "tone_ms", stats->tone_ms);
     glintL_set_whole(L, "refined", (lua_Integer)stats->refined);
-    lua_newtable(L);
-    glintL_set_whole(L, "primary", (lua_Integer)counts->primary);
-    glintL_set_whole(L, "shadow", (lua_Integer)counts->shadow);
-    glintL_set_whole(L, "mirror", (lua_Integer)counts->mirror);
-    glintL_set_whole(L, "refraction", (lua_Integer)counts->refraction);
-    glintL_set_whole(L, "indirect", (lua_Integer)counts->indirect);
-    lua_setfield(L, -2, "rays");
-    lua_newtable(L);
-    glintL_set_number(L, "tests", (double)work->tests);
-    glintL_set_number(L, "light_samples", (double)work->light_samples);
-    glintL_set_number(L, "powers", (double)work->powers);
-    glintL_set_number(L, "sites", (double)work->sites);
-    glintL_set_number(L, "overlaps", (double)work->overlaps);
-    glintL_set_number(L, "lights_seen", (double)work->lights_seen);
-    lua_setfield(L, -2, "work");
+    set_counts(L, "rays", RAYS, (uint64_t[]) { r->primary, r->shadow, r->mirror, r->refraction, r->indirect });
+    set_counts(L, "work", WORK,
+               (uint64_t[]) { w->tests, w->light_samples, w->powers, w->sites, w->overlaps, w->lights_seen });
 }
 
 // time(plan, frames): renders, encodes and times the frame, in memory. Returns the times of one, and its statistics.

@@ -24,6 +24,7 @@ function the.leave_out(study, ...) study.left_out[#study.left_out + 1] = format(
 local function add_case(study, choice, name)
   local case = { choice = choice, name = name, knob = next(choice), runs = 0, batch = 1, estimate_ms = 0.0,
     left_out = false, is_first_alone = false, squares = {}, products = {}, -- of the errors of pictures, see replicate
+    rounds = {}, -- of the runs
     ms = { render = {}, tone = {}, encode = {}, wall = {}, cpu = {} } }
   study.cases[#study.cases + 1] = case
   return case
@@ -32,12 +33,13 @@ end
 -- Varies one knob around the base.
 local function add_knob(study, knob)
   local values = study.values[knob.name] or {}
+  local base = values.base or values.own
   for i, value in ipairs(values) do
     local label = the.spell(value)
     local name = knob.name .. " " .. label
-    local case = i == (values.base or values.own) and study.own or add_case(study, { [knob.name] = value }, name)
+    local case = i == base and study.own or add_case(study, { [knob.name] = value }, name)
     study.rows[#study.rows + 1] = { knob = knob.name, value = value, label = label, name = name, case = case,
-      own = case == study.own,
+      own = case == study.own, far = math.abs(i - base),
       own_label = the.spell(values[values.own]), default = i == values.own, is_of_file = knob.is_of_file,
       other_time = knob.is_other_time or false, may_lose = knob.loses,
       is_truer = values.truth and values.own < i and i <= values.truth }

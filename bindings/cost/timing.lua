@@ -1,6 +1,7 @@
 -- Schedules the runs: one case at a time in random order, so that a slow phase of the machine affects all cases
 -- equally.
 local the = ...
+the.round = 0 -- runs of the same round are near to each other in time
 local PARTS <const> = { "render", "tone", "encode", "wall", "cpu" } -- cpu: of all threads
 
 -- Returns the next number of SplitMix64: good enough for the order of runs, and the same on every machine.
@@ -34,13 +35,14 @@ function the.run(case)
   local times, stats = the.tools.time(plan, case.batch)
   case.runs = case.runs + 1
   for _, part in ipairs(PARTS) do case.ms[part][case.runs] = times[part] end
+  case.rounds[case.runs] = the.round
   case.rays, case.refined, case.render_ms = stats.rays, stats.refined, stats.render_ms
   case.estimate_ms = the.tools.now() - start
 end
 
 -- ---- Quartiles ----
 
-local function quartiles(ms, runs)
+function the.quartiles(ms, runs)
   local sorted = table.move(ms, 1, runs, 1, {})
   table.sort(sorted)
   local function quantile(share)
@@ -56,9 +58,10 @@ end
 -- the machine changes it little.
 function the.summarize(study)
   for _, case in ipairs(study.cases) do
-    case.time, case.wall = quartiles(case.ms.cpu, case.runs), quartiles(case.ms.wall, case.runs)
+    case.time = the.quartiles(case.ms.cpu, case.runs)
+    case.wall = the.quartiles(case.ms.wall, case.runs)
     case.quartile_range, case.frames = case.time.q3 - case.time.q1, case.is_first_alone and 1 or case.batch
-    for _, part in ipairs { "render", "tone", "encode" } do case[part] = quartiles(case.ms[part], case.runs).median end
+    for i = 1, 3 do case[PARTS[i]] = the.quartiles(case.ms[PARTS[i]], case.runs).median end
   end
 end
 
@@ -80,18 +83,26 @@ local function shuffle(study, cases)
   end
 end
 
--- Runs all cases, each `study.runs` times.
-function the.time_cases(study)
-  fit_budget(study)
-  local cases, ms = {}, 0.0
-  for _, case in ipairs(study.cases) do
-    if not case.left_out and case.runs > 0 then cases[#cases + 1], ms = case, ms + case.estimate_ms end
-  end
-  for round = 1, study.runs do
+-- Runs the cases, each `runs` times. A round runs each case once.
+function the.run_rounds(study, cases, runs, what)
+  local ms = 0.0
+  for _, case in ipairs(cases) do ms = ms + case.estimate_ms end
+  for round = 1, runs do
+    the.round = the.round + 1
     shuffle(study, cases)
     for i, case in ipairs(cases) do
-      the.tools.show("timing", case.estimate_ms, ms * (study.runs - round + 1 - i / #cases))
+      the.tools.show(what, case.estimate_ms, ms * (runs - round + 1 - i / #cases))
       the.run(case)
     end
   end
+end
+
+-- Runs all cases, each `study.runs` times.
+function the.time_cases(study)
+  fit_budget(study)
+  local cases = {}
+  for _, case in ipairs(study.cases) do
+    if not case.left_out and case.runs > 0 then cases[#cases + 1] = case end
+  end
+  the.run_rounds(study, cases, study.runs, "timing")
 end

@@ -3,12 +3,11 @@ local the = ...
 local log, sqrt = math.log, math.sqrt
 
 local DOUBT <const> = 0.05 -- probability that any verdict of a study is wrong
-local LOOKS <const> = 4 -- verdicts are repeated as pictures are added
+local LOOKS <const> = 8 -- the number of pictures is doubled so often, and the verdicts are repeated
 local SAME <const> = log(1.05) -- errors that differ by less count as the same
 local ENOUGH <const> = 9 -- pictures whose own spread is known well enough
-local CHANCE <const> = 0.005 -- probability that noise passes for bias
 local LOST <const> = 0.001 -- share of pixels that change by more than one 8-bit value
-local TIME_SPREAD <const>, TIME_DOUBT <const> = 0.03, 2 -- spread of times between studies; standard errors
+local TIME_SPREAD <const>, TIME_DOUBT <const> = 0.02, 2.5 -- spread of times between studies; standard errors
 
 local function mean(list)
   local sum = 0
@@ -32,64 +31,91 @@ local function student(p, freedom)
     + (3 * z ^ 7 + 19 * z ^ 5 + 17 * z ^ 3 - 15 * z) / (384 * freedom ^ 3)
 end
 
+-- Returns the variance and its degrees of freedom. With few pictures, the variance is that of the knob's settings,
+-- which mostly share it, if that is larger. sum: the knob's sum of squares and its freedom, or nil.
+local function pooled(sum, variance, freedom)
+  if freedom < ENOUGH - 1 and sum then return math.max(variance, sum[1] / sum[2]), math.max(freedom, sum[2]) end
+  return variance, freedom
+end
+
+-- Returns the sums for `pooled`, by knob and of all settings. list_of(case): the numbers whose variance is pooled.
+local function pool(study, list_of)
+  local sums = {}
+  for _, case in ipairs(study.cases) do
+    if case ~= study.own and #case.squares > 0 then
+      local list = list_of(case)
+      local _, variance = moments(list)
+      for _, knob in ipairs { case.knob, "all" } do
+        local sum = sums[knob] or { 0, 0 }
+        sums[knob] = { sum[1] + variance * (#list - 1), sum[2] + #list - 1 }
+      end
+    end
+  end
+  return sums
+end
+
+-- Returns the quantile at which no verdict of the study is wrong with the probability 1 - DOUBT. sides: 1 or 2.
+local function quantile(study, sides, freedom) return student(DOUBT / (sides * LOOKS * #study.cases), freedom) end
+
 -- ---- Bias and noise ----
 
--- Computes the errors of a case without those of the reference: rmse of a picture, their spread, noise and bias.
--- A bias that the spread could explain is 0.
-function the.split_error(study, case)
+-- Returns the products of errors relative to the mean square.
+local function shares(case)
+  local square, out = mean(case.squares), {}
+  for i, product in ipairs(case.products) do out[i] = product / math.max(square, 1e-30) end
+  return out
+end
+
+-- Computes the errors of a case without those of the reference: rmse of a picture, their spread, noise and bias. A
+-- bias is stated if its interval excludes 0, for all settings together. Without bias, products are uncorrelated.
+local function split_error(study, case)
   if #case.squares == 0 then return end
   local reference, errors = study.reference.square, {}
   for i, square in ipairs(case.squares) do errors[i] = sqrt(math.max(square - reference, 0)) end
-  local bias, variance = moments(case.products)
-  local own = math.max(student(CHANCE, #case.squares - 1) * sqrt(2 * variance / #case.products), reference)
-  case.film.rmse = sqrt(math.max(mean(case.squares) - reference, 0))
-  case.film.bias = bias > own and sqrt(bias) or 0.0
+  local share, variance = moments(shares(case))
+  local freedom
+  variance, freedom = pooled(study.share_sums[case.knob or "all"], variance, #case.squares - 1)
+  local margin, square = quantile(study, 1, freedom) * sqrt(variance / #case.products), mean(case.squares)
+  case.film.rmse = sqrt(math.max(square - reference, 0))
+  case.film.bias = (share - margin) * square > reference and sqrt(share * square) or 0.0
   case.film.noise = sqrt(math.max(case.film.rmse ^ 2 - case.film.bias ^ 2, 0))
   case.film.spread = sqrt(select(2, moments(errors)))
 end
 
 -- ---- Verdicts ----
 
--- Returns the logarithms of the quotients of the errors of two cases, seed by seed: what the seed does to both
--- pictures does not count.
+-- Returns numbers whose mean is the logarithm of the quotient of two cases' errors, one for each seed: the jackknife's
+-- pseudo-values. What a seed does to both pictures does not count.
 local function quotients(study, a, b)
-  local out = {}
-  for i = 1, math.min(#a.squares, #b.squares) do
-    local function light(square) return math.max(square - study.reference.square, square / 10, 1e-30) end
-    out[i] = log(light(a.squares[i]) / light(b.squares[i])) / 2
+  local out, n, sum_a, sum_b = {}, math.min(#a.squares, #b.squares), 0, 0
+  local function light(square) return math.max(square - study.reference.square, square / 10, 1e-30) end
+  for i = 1, n do sum_a, sum_b = sum_a + light(a.squares[i]), sum_b + light(b.squares[i]) end
+  for i = 1, n do
+    local rest = (sum_a - light(a.squares[i])) / (sum_b - light(b.squares[i]))
+    out[i] = (n * log(sum_a / sum_b) - (n - 1) * log(rest)) / 2
   end
   return out
 end
 
--- Computes the spread of the quotients to the script's own setting, from all settings of a knob: they mostly share it.
+-- Splits all errors, and computes the spreads that settings of a knob share.
 function the.pool_spread(study)
-  local sums = {}
-  for _, case in ipairs(study.cases) do
-    if case ~= study.own and #case.squares > 0 then
-      local _, variance = moments(quotients(study, case, study.own))
-      local sum, freedom = sums[case.knob] or { 0, 0 }, #case.squares - 1
-      sums[case.knob] = { sum[1] + variance * freedom, sum[2] + freedom }
-    end
-  end
-  study.sums = sums
+  study.share_sums = pool(study, shares)
+  study.sums = pool(study, function(case) return quotients(study, case, study.own) end)
+  for _, case in ipairs(study.cases) do split_error(study, case) end
 end
 
 -- Returns the logarithm of the quotient of two cases' errors, and how far it may be off: with the probability DOUBT any
--- verdict of the study is. With few pictures, the spread is that of the knob if that is larger. The reference's error
--- counts, too.
+-- verdict of the study is. The reference's error counts, too.
 function the.compare(study, a, b)
   local list = quotients(study, a, b)
   local average, variance = moments(list)
   if average == 0 and variance == 0 then return 0, 0 end
-  local n, freedom, own = #list, #list - 1, 0
+  local freedom, own = #list - 1, 0
   for _, case in ipairs { a, b } do
-    local sum = study.sums[case.knob] or { 0, 0 }
-    if n < ENOUGH and sum[2] > 0 then
-      variance, freedom = math.max(variance, sum[1] / sum[2]), math.max(freedom, sum[2])
-    end
+    variance, freedom = pooled(study.sums[case.knob], variance, freedom)
     own = own + study.reference.square / math.max(mean(case.squares), 1e-30) / 2
   end
-  return average, student(DOUBT / (2 * LOOKS * #study.cases), freedom) * sqrt(variance / n) + own
+  return average, quantile(study, 2, freedom) * sqrt(variance / #list) + own
 end
 
 -- Returns whether a quotient is at most `most` (a logarithm): true, false, or nil if that is not decided.
@@ -97,14 +123,19 @@ function the.is_below(average, margin, most)
   if average + margin <= most then return true elseif average - margin > most then return false end
 end
 
--- Returns whether case a takes at most `share` of the time of case b; nil: not decided.
-function the.is_faster(a, b, share)
-  local square = TIME_SPREAD ^ 2
-  for _, case in ipairs { a, b } do
-    local noise = case.runs < the.RUNS_LEAST and 0.1 or 0.93 * case.quartile_range / case.time.median / sqrt(case.runs)
-    square = square + noise ^ 2
+-- Returns the logarithm of the quotient of two cases' times, and how far it may be off. The times of a round are
+-- compared with each other: a slow phase of the machine affects both.
+function the.compare_times(a, b)
+  local list, of_round = {}, {}
+  if a == b then return 0, 0 end
+  for i = 1, b.runs do of_round[b.rounds[i]] = b.ms.cpu[i] end
+  for i = 1, a.runs do
+    local other = of_round[a.rounds[i]]
+    if other then list[#list + 1] = log(a.ms.cpu[i] / other) end
   end
-  return the.is_below(log(a.time.median / b.time.median), TIME_DOUBT * sqrt(square), log(share))
+  local q = the.quartiles(list, #list)
+  local noise = #list < the.RUNS_LEAST and 0.1 or 0.93 * (q.q3 - q.q1) / sqrt(#list)
+  return q.median, TIME_DOUBT * sqrt(TIME_SPREAD ^ 2 + noise ^ 2)
 end
 
 -- Judges a row against the script's own: "better", "worse", "equal" or "not decided" of its error, or "effect lost". A
@@ -116,10 +147,6 @@ function the.judge_error(study, row)
   if row.own then row.verdict = "equal" return end
   local average, margin = the.compare(study, case, study.own)
   row.average, row.margin = average, margin
-  if row.is_truer and case.film.bias > study.own.film.bias then -- chance: it has no more bias
-    case.film.bias = study.own.film.bias
-    case.film.noise = sqrt(math.max(case.film.rmse ^ 2 - case.film.bias ^ 2, 0))
-  end
   row.verdict = row.loss and "effect lost" or math.abs(average) + margin <= SAME and "equal"
     or average + margin < 0 and "better" or average - margin > 0 and not row.is_truer and "worse" or "not decided"
   row.is_as_good = not row.loss and the.is_below(average, margin, SAME)

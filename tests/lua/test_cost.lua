@@ -335,7 +335,7 @@ for _, times in ipairs { 1, 2, 4, 8, 16, 32 } do
   check(row.bias <= worse and row.counters.primary == 64 * 48 * times, "%d times: %g off, before %g; %d rays", times, row.bias,
     worse, row.counters.primary)
   check(times < 8 or row.verdict ~= "worse" and row.loss == null, "%d times: %s", times, row.verdict)
-  worse = row.bias
+  worse = row.bias > 0 and row.bias or worse -- 0: the noise hides it
 end
 check(find(shutter, "samples", 16).counters.primary == 64 * 48 * 16 * 8, "16 samples at each of 8 times")
 local nine = study("nine", write("nine.lua", (exposed:gsub("TIMES", "9"))) .. " --frame 2 --knobs shutter_times")
