@@ -40,30 +40,48 @@ static const char *read_exponent(const char *at, const char *end, long *exponent
     return at;
 }
 
+/// Reads more than DIGITS_MAX digits before the exponent.
+static void read_many(const char *at, const char *end, decimal *d)
+{
+    int count = 0;
+    bool has_point = false;
+    d->digits = 0;
+    for (; at < end; at++) {
+        const unsigned digit = (unsigned)(*at - '0');
+        if (digit > 9) {
+            has_point = true;
+            continue;
+        }
+        d->exponent -= has_point;
+        if (count < DIGITS_MAX) {
+            d->digits = 10 * d->digits + digit;
+            count += d->digits != 0;
+        } else {
+            d->cut = d->cut || digit != 0;
+            d->exponent++;
+        }
+    }
+}
+
 /// Reads the digits before the exponent. Returns the position after them; NULL: there are none.
 static const char *read_digits(const char *at, const char *end, decimal *d)
 {
-    int count = 0;
-    bool has_digit = false, has_point = false;
+    const char *const first = at, *point = NULL;
     for (; at < end; at++) {
         const unsigned digit = (unsigned)(*at - '0');
-        if (digit <= 9) {
-            has_digit = true;
-            d->exponent -= has_point;
-            if (count < DIGITS_MAX) {
-                d->digits = 10 * d->digits + digit;
-                count += d->digits != 0;
-            } else {
-                d->cut = d->cut || digit != 0;
-                d->exponent++;
-            }
-        } else if (*at == '.' && !has_point) {
-            has_point = true;
-        } else {
+        if (digit <= 9)
+            d->digits = 10 * d->digits + digit;
+        else if (*at == '.' && !point)
+            point = at;
+        else
             break;
-        }
     }
-    return has_digit ? at : NULL;
+    const ptrdiff_t count = at - first - (point != NULL);
+    if (count > DIGITS_MAX)
+        read_many(first, at, d);
+    else if (point)
+        d->exponent = -(long)(at - point - 1);
+    return count > 0 ? at : NULL;
 }
 
 /// Reads the whole text. Fortran's exponents may begin with D or d, or with their sign.

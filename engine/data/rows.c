@@ -21,6 +21,13 @@ typedef struct text_part {
 
 static inline bool is_space(char c) { return c == ' ' || (unsigned char)(c - '\t') < 5; }
 
+static inline const char *word_end(const char *at, const char *end)
+{
+    while (at < end && ((unsigned char)*at > ' ' || !is_space(*at)))
+        at++;
+    return at;
+}
+
 /// Takes the next field of a line whose fields are separated by spaces. False: there is none.
 static inline bool take_word(cursor *line, text_part *out)
 {
@@ -28,10 +35,8 @@ static inline bool take_word(cursor *line, text_part *out)
     while (at < end && is_space(*at))
         at++;
     out->at = at;
-    while (at < end && !is_space(*at))
-        at++;
-    out->length = (size_t)(at - out->at);
-    line->at = at;
+    line->at = word_end(at, end);
+    out->length = (size_t)(line->at - at);
     return out->length > 0;
 }
 

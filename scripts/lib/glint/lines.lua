@@ -98,7 +98,9 @@ end
 -- Returns the block with lines that end in LF or CRLF. Carriage returns without an LF after them become line ends, and
 -- several before one LF become one line end. All other bytes stay.
 local function end_lines(block)
-  if not block:find("\r", 1, true) or not block:find "\r[^\n]" then return block end
+  local at = 0
+  repeat at = block:find("\r", at + 1, true) until not at or block:byte(at + 1) ~= 10
+  if not at or at == #block then return block end
   return (block:gsub("(\r+)()", function(run, after)
     return block:byte(after) == 10 and (" "):rep(#run - 1) .. "\r" or ("\n"):rep(#run)
   end))
