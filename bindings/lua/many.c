@@ -1,7 +1,6 @@
 #include "bindings/lua/many.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #define PATH_SIZE 32
 
@@ -12,85 +11,42 @@ void glintL_many_fetch(lua_State *L, const char *name, int index)
     lua_replace(L, index);
 }
 
-// Checks one number of the index, counted from 1.
-static uint32_t checked(lua_State *L, const glintL_many *many, size_t i, lua_Integer number, size_t material_count)
-{
-    if (number < 1 || (size_t)number > material_count)
-        glintL_error(L, "%s.index[%I]: number 1 .. %I expected, got %I", many->object, (LUAI_UACINT)i + 1,
-                     (LUAI_UACINT)material_count, (LUAI_UACINT)number);
-    return (uint32_t)number - 1;
-}
-
-static void read_list(lua_State *L, const glintL_many *many, size_t count, size_t material_count, uint32_t *out)
-{
-    for (size_t i = 0; i < count; i++) {
-        int is_whole = 0;
-        bool is_number = lua_rawgeti(L, many->index, (lua_Integer)i + 1) == LUA_TNUMBER;
-        lua_Integer number = lua_tointegerx(L, -1, &is_whole);
-        if (!is_number || !is_whole) {
-            const char *got = glintL_push_spelling(L, -1);
-            glintL_error(L, "%s.index[%I]: whole number expected, got %s", many->object, (LUAI_UACINT)i + 1, got);
-        }
-        out[i] = checked(L, many, i, number, material_count);
-        lua_pop(L, 1);
-    }
-}
-
-static void read_packed(lua_State *L, const glintL_many *many, size_t count, size_t material_count, uint32_t *out)
-{
-    const char *packed = lua_tostring(L, many->index);
-    for (size_t i = 0; i < count; i++) {
-        uint32_t number;
-        memcpy(&number, packed + i * sizeof number, sizeof number);
-        out[i] = checked(L, many, i, number, material_count);
-    }
-}
-
-static void read_array(lua_State *L, const glintL_many *many, const glintL_array *array, size_t material_count, uint32_t *out)
-{
-    for (size_t i = 0; i < array->count; i++)
-        out[i] = checked(L, many, i, array->wholes[i], material_count);
-}
-
-static void check_size(lua_State *L, const glintL_many *many, size_t expected)
-{
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s.index", many->object);
-    const glintL_array *array = glintL_to_array(L, many->index);
-    if (array && (!array->is_whole || array->width != 1))
-        glintL_refuse(L, many->index, path, "array of whole numbers");
-    if (lua_istable(L, many->index) || array) {
-        const size_t count = array ? array->count : glintL_check_list(L, many->index, path, false);
-        if (count != expected)
-            glintL_error(L, "%s: %I numbers (one a %s) expected, got %I", path, (LUAI_UACINT)expected, many->each,
-                         (LUAI_UACINT)count);
-    } else if (lua_type(L, many->index) == LUA_TSTRING) {
-        const size_t bytes = lua_rawlen(L, many->index);
-        if (bytes % sizeof(uint32_t) != 0 || bytes / sizeof(uint32_t) != expected)
-            glintL_error(L, "%s: %I bytes (a u32 a %s) expected, got %I bytes", path,
-                         (LUAI_UACINT)(expected * sizeof(uint32_t)), many->each, (LUAI_UACINT)bytes);
-    } else {
-        glintL_refuse(L, many->index, path, "array, table or packed string of numbers");
-    }
-}
-
 const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t count, size_t material_count)
 {
+    char path[PATH_SIZE];
     glintL_many_fetch(L, "index", many->index);
     if (lua_isnil(L, many->index) && material_count < 2)
         return NULL;
     if (material_count == 0)
         glintL_error(L, "%s.index: an index needs materials; set materials, too", many->object);
-    check_size(L, many, count);
+    snprintf(path, sizeof path, "%s.index", many->object);
+    const glintL_array *array = glintL_to_array(L, many->index);
+    if (lua_istable(L, many->index)) {
+        const glintL_numbers numbers = { .path = path, .is_whole = true };
+        array = glintL_take_list(L, many->index, &numbers, glintL_check_list(L, many->index, path, false));
+    } else if (lua_type(L, many->index) == LUA_TSTRING) {
+        const size_t bytes = lua_rawlen(L, many->index);
+        if (bytes != count * sizeof(uint32_t))
+            glintL_error(L, "%s: %I bytes (a u32 a %s) expected, got %I bytes", path,
+                         (LUAI_UACINT)(count * sizeof(uint32_t)), many->each, (LUAI_UACINT)bytes);
+        array = glintL_take_packed(L, many->index, 'u');
+    } else if (!array) {
+        glintL_refuse(L, many->index, path, "array, table or packed string of numbers");
+    }
+    if (!array->is_whole || array->width != 1)
+        glintL_refuse(L, many->index, path, "array of whole numbers");
+    if (array->count != count)
+        glintL_error(L, "%s: %I numbers (one a %s) expected, got %I", path, (LUAI_UACINT)count, many->each,
+                     (LUAI_UACINT)array->count);
     uint32_t *out = lua_newuserdatauv(L, (count + 1) * sizeof *out, 0);
     lua_replace(L, many->index_buffer);
-    const glintL_array *array = glintL_to_array(L, many->index);
-    if (array)
-        read_array(L, many, array, material_count, out);
-    else if (lua_istable(L, many->index))
-        read_list(L, many, count, material_count, out);
-    else
-        read_packed(L, many, count, material_count, out);
+    for (size_t i = 0; i < count; i++) {
+        const int64_t number = array->wholes[i];
+        if (number < 1 || (uint64_t)number > material_count)
+            glintL_error(L, "%s[%I]: number 1 .. %I expected, got %I", path, (LUAI_UACINT)i + 1,
+                         (LUAI_UACINT)material_count, (LUAI_UACINT)number);
+        out[i] = (uint32_t)number - 1;
+    }
     return out;
 }
 

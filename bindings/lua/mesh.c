@@ -62,11 +62,8 @@ enum {
     INDEX_BUFFER,
     POINTERS,
     KEPT,
-    VERTEX_BUFFER,
     CORNER_BUFFER,
     SIZE_BUFFER,
-    NORMAL_BUFFER,
-    UV_BUFFER,
     NUMBER_BUFFER,
     UV_NUMBER_BUFFER
 };
@@ -91,23 +88,6 @@ typedef struct entry_kind {
 static const entry_kind VERTEX = { "vertices", "{x, y, z}", 3 }, NORMAL = { "normals", "{x, y, z}", 3 },
                         PAIR = { "uv", "{u, v}", 2 };
 
-static void read_number(lua_State *L, int list, size_t i, const char *name, double *out)
-{
-    if (lua_rawgeti(L, list, (lua_Integer)i) != LUA_TNUMBER) {
-        const char *got = glintL_push_spelling(L, -1);
-        glintL_error(L, "mesh.%s[%I]: number expected, got %s", name, (LUAI_UACINT)i, got);
-    }
-    *out = lua_tonumber(L, -1);
-    lua_pop(L, 1);
-}
-
-static double *new_numbers(lua_State *L, size_t count, int buffer)
-{
-    double *out = lua_newuserdatauv(L, (count ? count : 1) * sizeof *out, 0);
-    lua_replace(L, buffer);
-    return out;
-}
-
 // Reads the entry on top of the stack.
 static void read_entry(lua_State *L, const char *path, const entry_kind *kind, double *out)
 {
@@ -124,69 +104,56 @@ static void read_entry(lua_State *L, const char *path, const entry_kind *kind, d
     }
 }
 
-static double *read_point_list(lua_State *L, int index, const entry_kind *kind, int buffer, size_t *count)
+// Replaces the list of rows at `index` by an array.
+static const glintL_array *take_rows(lua_State *L, int index, const entry_kind *kind, size_t count)
 {
     char path[64];
-    const size_t entries = glintL_check_list(L, index, kind->name, false), size = (size_t)kind->size;
-    const bool flat = lua_rawgeti(L, index, 1) == LUA_TNUMBER;
-    lua_pop(L, 1);
-    if (flat && entries % size != 0)
-        glintL_error(L, "mesh.%s: %d numbers each expected, got %I numbers", kind->name, kind->size,
-                     (LUAI_UACINT)entries);
-    *count = flat ? entries / size : entries;
-    double *out = new_numbers(L, size * *count, buffer);
-    for (size_t i = 0; i < entries; i++) {
-        if (flat) {
-            read_number(L, index, i + 1, kind->name, &out[i]);
-            continue;
-        }
+    glintL_array *out = glintL_push_array(L, count, (size_t)kind->size, false);
+    for (size_t i = 0; i < count; i++) {
         strncpy(path, lua_pushfstring(L, "mesh.%s[%I]", kind->name, (LUAI_UACINT)i + 1), sizeof path - 1);
         path[sizeof path - 1] = 0;
         lua_pop(L, 1);
         lua_rawgeti(L, index, (lua_Integer)i + 1);
-        read_entry(L, path, kind, out + size * i);
+        read_entry(L, path, kind, out->numbers + (size_t)kind->size * i);
         lua_pop(L, 1);
     }
+    lua_replace(L, index);
     return out;
 }
 
-static double *read_packed_points(lua_State *L, const arguments *a, int index, const entry_kind *kind, int buffer,
-                                  size_t *count)
+static bool is_flat(lua_State *L, int index)
 {
-    size_t bytes;
-    const char *packed = lua_tolstring(L, index, &bytes);
-    const size_t size = a->format == 1 ? sizeof(float) : sizeof(double), each = (size_t)kind->size * size;
-    if (bytes % each != 0)
-        glintL_error(L, "mesh.%s: %d bytes each (%s in %s) expected, got %I bytes", kind->name, (int)each,
-                     kind->size == 3 ? "x, y, z" : "u, v", FORMATS[a->format - 1], (LUAI_UACINT)bytes);
-    *count = bytes / each;
-    double *out = new_numbers(L, bytes / size, buffer);
-    for (size_t i = 0; i < bytes / size; i++) {
-        float f;
-        memcpy(size == sizeof f ? (void *)&f : (void *)&out[i], packed + i * size, size);
-        if (size == sizeof f)
-            out[i] = f;
-    }
-    return out;
+    const bool flat = lua_rawgeti(L, index, 1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    return flat;
 }
 
-static double *read_points(lua_State *L, const arguments *a, int index, const entry_kind *kind, int buffer,
-                           size_t *count)
+// The array at `index` has the numbers, and replaces a list or string there.
+static const double *read_points(lua_State *L, const arguments *a, int index, const entry_kind *kind, size_t *count)
 {
-    char path[32] = "mesh.", expected[80];
+    char path[32], expected[80];
     const glintL_array *array = glintL_to_array(L, index);
-    if (array && !array->is_whole && array->width == (uint32_t)kind->size) {
-        *count = array->count;
-        return array->numbers; // `index` keeps the array
-    }
-    if (lua_istable(L, index))
-        return read_point_list(L, index, kind, buffer, count);
-    if (lua_type(L, index) == LUA_TSTRING)
-        return read_packed_points(L, a, index, kind, buffer, count);
-    strcat(path, kind->name);
+    const size_t size = (size_t)kind->size, each = size * (a->format == 1 ? sizeof(float) : sizeof(double));
+    snprintf(path, sizeof path, "mesh.%s", kind->name);
     snprintf(expected, sizeof expected, "list of %s, array of such rows, flat table or packed string", kind->form);
-    glintL_refuse(L, index, path, expected);
-    return NULL;
+    if (lua_istable(L, index)) {
+        const size_t entries = glintL_check_list(L, index, kind->name, false);
+        const bool flat = is_flat(L, index);
+        if (flat && entries % size != 0)
+            glintL_error(L, "%s: %d numbers each expected, got %I numbers", path, kind->size, (LUAI_UACINT)entries);
+        array = flat ? glintL_take_list(L, index, &(glintL_numbers) { .path = path }, entries)
+                     : take_rows(L, index, kind, entries);
+    } else if (lua_type(L, index) == LUA_TSTRING) {
+        if (lua_rawlen(L, index) % each != 0)
+            glintL_error(L, "%s: %d bytes each (%s in %s) expected, got %I bytes", path, (int)each,
+                         size == 3 ? "x, y, z" : "u, v", FORMATS[a->format - 1], (LUAI_UACINT)lua_rawlen(L, index));
+        array = glintL_take_packed(L, index, a->format == 1 ? 'f' : 'd');
+    } else if (!array || array->is_whole || array->width != size) {
+        glintL_refuse(L, index, path, expected);
+        return NULL;
+    }
+    *count = array->count * array->width / size;
+    return array->numbers;
 }
 
 static void read_format(lua_State *L, arguments *a)
@@ -237,42 +204,20 @@ static uint32_t *new_indices(lua_State *L, size_t count, int buffer)
     return out;
 }
 
-// Makes all faces triangles: their numbers are consecutive.
-static void set_triangles(lua_State *L, arguments *a, size_t numbers, const char *what)
+// Reads triangles from the array at FACES.
+static void read_triangles(lua_State *L, arguments *a, const glintL_array *array)
 {
+    const size_t numbers = array->count * array->width;
     if (numbers % 3 != 0)
-        glintL_error(L, "mesh.faces: 3 numbers a triangle expected, got %I %s", (LUAI_UACINT)numbers, what);
+        glintL_error(L, "mesh.faces: 3 numbers a triangle expected, got %I numbers", (LUAI_UACINT)numbers);
     a->desc.face_count = numbers / 3;
-    uint32_t *sizes = new_indices(L, a->desc.face_count, SIZE_BUFFER);
-    for (size_t i = 0; i < a->desc.face_count; i++)
-        sizes[i] = 3;
-    a->desc.face_sizes = sizes;
-    a->desc.corners = new_indices(L, numbers, CORNER_BUFFER);
-}
-
-static void read_packed_faces(lua_State *L, arguments *a)
-{
-    size_t bytes;
-    const char *packed = lua_tolstring(L, FACES, &bytes);
-    if (bytes % sizeof(uint32_t) != 0)
-        glintL_error(L, "mesh.faces: 12 bytes a triangle (three u32) expected, got %I bytes", (LUAI_UACINT)bytes);
-    set_triangles(L, a, bytes / sizeof(uint32_t), "numbers");
-    uint32_t *out = lua_touserdata(L, CORNER_BUFFER);
-    for (size_t i = 0; i < 3 * a->desc.face_count; i++) {
-        uint32_t number;
-        memcpy(&number, packed + i * sizeof number, sizeof number);
-        out[i] = checked_vertex(L, a, i / 3 + 1, number);
+    uint32_t *sizes = new_indices(L, a->desc.face_count, SIZE_BUFFER), *out = new_indices(L, numbers, CORNER_BUFFER);
+    for (size_t i = 0; i < numbers; i++) {
+        sizes[i / 3] = 3;
+        out[i] = checked_vertex(L, a, i / 3 + 1, array->wholes[i]);
     }
-}
-
-static void read_flat_faces(lua_State *L, arguments *a, size_t numbers)
-{
-    set_triangles(L, a, numbers, "numbers");
-    uint32_t *out = lua_touserdata(L, CORNER_BUFFER);
-    lua_pushvalue(L, FACES);
-    for (size_t i = 0; i < numbers; i++)
-        out[i] = read_vertex_number(L, a, i / 3 + 1, i + 1);
-    lua_pop(L, 1);
+    a->desc.face_sizes = sizes;
+    a->desc.corners = out;
 }
 
 static void read_polygons(lua_State *L, arguments *a, size_t faces)
@@ -308,19 +253,26 @@ static void read_polygons(lua_State *L, arguments *a, size_t faces)
 
 static void read_faces(lua_State *L, arguments *a)
 {
+    static const glintL_numbers numbers = { "mesh.faces", "number of a vertex", 3, true };
+    const glintL_array *array = glintL_to_array(L, FACES);
     if (lua_type(L, FACES) == LUA_TSTRING) {
-        read_packed_faces(L, a);
+        if (lua_rawlen(L, FACES) % sizeof(uint32_t) != 0)
+            glintL_error(L, "mesh.faces: 12 bytes a triangle (three u32) expected, got %I bytes",
+                         (LUAI_UACINT)lua_rawlen(L, FACES));
+        array = glintL_take_packed(L, FACES, 'u');
+    } else if (lua_istable(L, FACES)) {
+        const size_t entries = glintL_check_list(L, FACES, "mesh.faces", false);
+        if (!is_flat(L, FACES)) {
+            read_polygons(L, a, entries);
+            return;
+        }
+        array = glintL_take_list(L, FACES, &numbers, entries);
+    } else if (!array || !array->is_whole || (array->width != 1 && array->width != 3)) {
+        glintL_refuse(L, FACES, "mesh.faces",
+                      "list of faces, array of three integers a row, flat table of triangles or packed string of u32");
         return;
     }
-    if (!lua_istable(L, FACES))
-        glintL_refuse(L, FACES, "mesh.faces", "list of faces, flat table of triangles or packed string of u32");
-    const size_t entries = glintL_check_list(L, FACES, "mesh.faces", false);
-    const bool flat = lua_rawgeti(L, FACES, 1) == LUA_TNUMBER;
-    lua_pop(L, 1);
-    if (flat)
-        read_flat_faces(L, a, entries);
-    else
-        read_polygons(L, a, entries);
+    read_triangles(L, a, array);
 }
 
 // ---- Normals and coordinates: one per vertex, or one per corner in the order of the faces ----
@@ -349,14 +301,14 @@ static void read_arrays(lua_State *L, arguments *a)
     glintL_many_fetch(L, "normals", NORMALS);
     glintL_many_fetch(L, "uv", UV);
     read_format(L, a);
-    a->desc.vertices = read_points(L, a, VERTICES, &VERTEX, VERTEX_BUFFER, &a->desc.vertex_count);
+    a->desc.vertices = read_points(L, a, VERTICES, &VERTEX, &a->desc.vertex_count);
     read_faces(L, a);
     if (!lua_isnil(L, NORMALS)) {
-        a->desc.normals = read_points(L, a, NORMALS, &NORMAL, NORMAL_BUFFER, &a->desc.normal_count);
+        a->desc.normals = read_points(L, a, NORMALS, &NORMAL, &a->desc.normal_count);
         a->desc.normal_corners = number_corners(L, a, "normals", a->desc.normal_count, NUMBER_BUFFER);
     }
     if (!lua_isnil(L, UV)) {
-        a->desc.uv = read_points(L, a, UV, &PAIR, UV_BUFFER, &a->desc.uv_count);
+        a->desc.uv = read_points(L, a, UV, &PAIR, &a->desc.uv_count);
         a->desc.uv_corners = number_corners(L, a, "uv", a->desc.uv_count, UV_NUMBER_BUFFER);
     }
 }

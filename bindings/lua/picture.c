@@ -66,7 +66,17 @@ static int bytes(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg METHODS[] = { { "bytes", bytes }, { "pixel", pixel }, { NULL, NULL } };
+// Returns all pixels as an array with a row for each, from the top left.
+static int to_array(lua_State *L)
+{
+    const picture *self = check_self(L);
+    glintL_array *out = glintL_push_array(L, (size_t)self->width * (size_t)self->height, 3, false);
+    for (size_t i = 0; i < 3 * out->count; i++)
+        out->numbers[i] = self->values[i];
+    return 1;
+}
+
+static const luaL_Reg METHODS[] = { { "array", to_array }, { "bytes", bytes }, { "pixel", pixel }, { NULL, NULL } };
 
 static int read_member(lua_State *L)
 {

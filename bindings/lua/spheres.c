@@ -1,6 +1,5 @@
 // The constructors glint.spheres and glint.cylinders: many of them from an array, a flat table or a packed string.
 #include <stdio.h>
-#include <string.h>
 
 #include "bindings/lua/many.h"
 
@@ -35,7 +34,7 @@ static const glintL_field FIELDS[] = {
 };
 
 // Stack positions of the constructor: the argument, the box, then the argument's fields and a buffer for each.
-enum { ARGUMENT = 1, BOX, DATA, DATA_BUFFER, FORMAT, INDEX, INDEX_BUFFER, MATERIAL, MATERIALS, POINTERS, KEPT };
+enum { ARGUMENT = 1, BOX, DATA, FORMAT, INDEX, INDEX_BUFFER, MATERIAL, MATERIALS, POINTERS, KEPT };
 
 #define PLACES \
     .material = MATERIAL, .materials = MATERIALS, .index = INDEX, .index_buffer = INDEX_BUFFER, .pointers = POINTERS, .kept = KEPT
@@ -59,70 +58,35 @@ static void read_format(lua_State *L, arguments *a)
     }
 }
 
-static void read_packed(lua_State *L, arguments *a)
-{
-    size_t bytes, record = a->numbers * (a->format == FORMAT_F32 ? sizeof(float) : sizeof(double));
-    a->desc.data = lua_tolstring(L, DATA, &bytes);
-    if (bytes % record != 0 || bytes == 0)
-        glintL_error(L, "%s.data: %d bytes a %s (%s in %s) expected, got %I bytes", a->many->object, (int)record,
-                     a->many->each, a->names, FORMATS[a->format], (LUAI_UACINT)bytes);
-    a->desc.count = bytes / record;
-    a->desc.is_float = a->format == FORMAT_F32;
-}
-
-static void check_count(lua_State *L, const arguments *a, size_t count)
-{
-    if (count % a->numbers != 0 || count == 0 || count / a->numbers > ITEMS_MAX)
-        glintL_error(L, "%s.data: %d numbers a %s (%s) expected, got %I numbers", a->many->object, (int)a->numbers, a->many->each,
-                     a->names, (LUAI_UACINT)count);
-}
-
-static void read_array(lua_State *L, arguments *a, const glintL_array *array)
-{
-    if (array->is_whole || (array->width != 1 && array->width != a->numbers))
-        glintL_error(L, "%s.data: array of %d numbers a row (%s) expected, got %I %s", a->many->object, (int)a->numbers, a->names,
-                     (LUAI_UACINT)array->width, array->is_whole ? "integers" : "numbers");
-    check_count(L, a, array->count * array->width);
-    a->desc.data = array->numbers;
-    a->desc.count = array->count * array->width / a->numbers;
-}
-
-static void read_list(lua_State *L, arguments *a)
-{
-    char path[32];
-    snprintf(path, sizeof path, "%s.data", a->many->object);
-    const size_t count = glintL_check_list(L, DATA, path, false);
-    check_count(L, a, count);
-    double *out = lua_newuserdatauv(L, count * sizeof *out, 0);
-    lua_replace(L, DATA_BUFFER);
-    for (size_t i = 0; i < count; i++) {
-        if (lua_rawgeti(L, DATA, (lua_Integer)i + 1) != LUA_TNUMBER) {
-            const char *got = glintL_push_spelling(L, -1);
-            glintL_error(L, "%s[%I]: number expected, got %s", path, (LUAI_UACINT)i + 1, got);
-        }
-        out[i] = lua_tonumber(L, -1);
-        lua_pop(L, 1);
-    }
-    a->desc.data = out;
-    a->desc.count = count / a->numbers;
-}
-
 static void read_data(lua_State *L, arguments *a)
 {
     char path[32], expected[96];
+    const char *each = a->many->each;
     glintL_many_fetch(L, "data", DATA);
     const glintL_array *array = glintL_to_array(L, DATA);
+    const size_t bytes = lua_type(L, DATA) == LUA_TSTRING ? lua_rawlen(L, DATA) : 0;
     snprintf(path, sizeof path, "%s.data", a->many->object);
     snprintf(expected, sizeof expected, "array, flat table or packed string of %s", a->names);
     if (lua_type(L, DATA) != LUA_TSTRING && !lua_istable(L, DATA) && !array)
         glintL_refuse(L, DATA, path, expected);
     read_format(L, a);
-    if (array)
-        read_array(L, a, array);
-    else if (lua_istable(L, DATA))
-        read_list(L, a);
-    else
-        read_packed(L, a);
+    const size_t record = a->numbers * (a->format == FORMAT_F32 ? sizeof(float) : sizeof(double));
+    if (a->format && (bytes % record != 0 || bytes == 0))
+        glintL_error(L, "%s: %d bytes a %s (%s in %s) expected, got %I bytes", path, (int)record, each, a->names,
+                     FORMATS[a->format], (LUAI_UACINT)bytes);
+    if (array && (array->is_whole || (array->width != 1 && array->width != a->numbers)))
+        glintL_error(L, "%s: array of %d numbers a row (%s) expected, got %I %s", path, (int)a->numbers, a->names,
+                     (LUAI_UACINT)array->width, array->is_whole ? "integers" : "numbers");
+    if (a->format)
+        array = glintL_take_packed(L, DATA, a->format == FORMAT_F32 ? 'f' : 'd');
+    else if (!array)
+        array = glintL_take_list(L, DATA, &(glintL_numbers) { .path = path }, glintL_check_list(L, DATA, path, false));
+    const size_t count = array->count * array->width;
+    if (count % a->numbers != 0 || count == 0 || count / a->numbers > ITEMS_MAX)
+        glintL_error(L, "%s: %d numbers a %s (%s) expected, got %I numbers", path, (int)a->numbers, each, a->names,
+                     (LUAI_UACINT)count);
+    a->desc.data = array->numbers;
+    a->desc.count = count / a->numbers;
 }
 
 static int make(lua_State *L, arguments *a, const glintL_field *fields,

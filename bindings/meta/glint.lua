@@ -379,7 +379,7 @@ function glint.cylinders(fields) end
 ---@class glint.mesh_fields: glint.shape_fields
 ---@field file? string  a mesh, relative to the working directory: .stl (without `material` also VisCAM's colours); .ply (without `material` also its colours, with one material for each colour); else a Wavefront .obj (v, vt, vn, f, s; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
 ---@field vertices? glint.vec3[]|number[]|string  positions: a list of {x, y, z}, a flat table or packed numbers
----@field faces? integer[][]|integer[]|string  indices of vertices, from 1: a list for each face, with any number of corners, counter-clockwise seen from the front; or a flat table or packed u32 numbers of triangles
+---@field faces? integer[][]|integer[]|glint.array|string  indices of vertices, from 1: a list for each face, with any number of corners, counter-clockwise seen from the front; or triangles as an array of three integers a row, a flat table or packed u32 numbers
 ---@field normals? glint.vec3[]|number[]|string  one per vertex, or one per corner in the order of the faces; not zero, need not be unit
 ---@field uv? number[][]|number[]|string  u, v for s.uv and textures, one pair per vertex, or one per corner in the order of the faces; a file stores them as `vt`
 ---@field format? "f32"|"f64"  number format of packed vertices, normals and uv; required for packed data, otherwise refused
@@ -1450,6 +1450,10 @@ function picture:pixel(x, y) end
 --- Returns all pixels as float32 numbers, little endian, three per pixel, row by row from the top.
 ---@return string
 function picture:bytes() end
+
+--- Returns all pixels as an array with a row for each, from the top left, row by row.
+---@return glint.array
+function picture:array() end
 
 --- Reads a .png or .pfm.
 ---@param path string

@@ -36,8 +36,8 @@ glintL_array *glintL_check_array(lua_State *L)
 
 // ---- Making ----
 
-// Reads the number on top of the stack, and pops it.
-static void take_number(lua_State *L, glintL_array *a, size_t i, size_t row)
+// Reads the number on top of the stack into number i, and pops it. Messages name it path[row].
+static void take_number(lua_State *L, glintL_array *a, size_t i, const char *path, size_t row, const char *what)
 {
     int is_whole = lua_type(L, -1) == LUA_TNUMBER;
     if (is_whole && a->is_whole)
@@ -46,9 +46,42 @@ static void take_number(lua_State *L, glintL_array *a, size_t i, size_t row)
         a->numbers[i] = lua_tonumber(L, -1);
     if (!is_whole) {
         const char *got = glintL_push_spelling(L, -1);
-        glintL_error(L, "array[%I]: %s expected, got %s", (LUAI_UACINT)row + 1, a->is_whole ? "whole number" : "number", got);
+        glintL_error(L, "%s[%I]: %s expected, got %s", path, (LUAI_UACINT)row + 1, what, got);
     }
     lua_pop(L, 1);
+}
+
+static const char *name_of(bool is_whole) { return is_whole ? "whole number" : "number"; }
+
+glintL_array *glintL_take_list(lua_State *L, int index, const glintL_numbers *numbers, size_t count)
+{
+    glintL_array *a = glintL_push_array(L, count, 1, numbers->is_whole);
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        take_number(L, a, i, numbers->path, numbers->per ? i / numbers->per : i,
+                    numbers->what ? numbers->what : name_of(a->is_whole));
+    }
+    lua_replace(L, index);
+    return a;
+}
+
+glintL_array *glintL_take_packed(lua_State *L, int index, char format)
+{
+    size_t bytes;
+    const char *at = lua_tolstring(L, index, &bytes);
+    const size_t size = format == 'd' ? sizeof(double) : sizeof(float);
+    glintL_array *a = glintL_push_array(L, bytes / size, 1, format == 'u');
+    for (size_t i = 0; i < a->count; i++, at += size) {
+        float f;
+        uint32_t u;
+        memcpy(format == 'd' ? (void *)&a->numbers[i] : format == 'f' ? (void *)&f : (void *)&u, at, size);
+        if (format == 'f')
+            a->numbers[i] = f;
+        else if (format == 'u')
+            a->wholes[i] = u;
+    }
+    lua_replace(L, index);
+    return a;
 }
 
 // Reads a row of several numbers on top of the stack, and pops it: a vector, or a list.
@@ -64,7 +97,7 @@ static void take_row(lua_State *L, glintL_array *a, size_t row)
             lua_pushnumber(L, v[c]);
         else
             lua_rawgeti(L, -1, c + 1);
-        take_number(L, a, row * a->width + (size_t)c, row);
+        take_number(L, a, row * a->width + (size_t)c, "array", row, name_of(a->is_whole));
     }
     lua_pop(L, 1);
 }
@@ -116,13 +149,15 @@ static void read_list(lua_State *L, bool is_whole)
     }
     if (width < 1 || width > WIDTH_MAX)
         glintL_error(L, "array[1]: 1 to %d numbers expected, got %I", WIDTH_MAX, (LUAI_UACINT)width);
+    if (width == 1) {
+        glintL_take_list(L, 1, &(glintL_numbers) { .path = "array", .is_whole = is_whole }, count);
+        lua_settop(L, 1);
+        return;
+    }
     glintL_array *a = glintL_push_array(L, count, width, is_whole);
     for (size_t i = 0; i < count; i++) {
         lua_rawgeti(L, 1, (lua_Integer)i + 1);
-        if (width == 1)
-            take_number(L, a, i, i);
-        else
-            take_row(L, a, i);
+        take_row(L, a, i);
     }
 }
 
@@ -264,7 +299,7 @@ static int write_member(lua_State *L)
     const size_t row = check_row(L, a, 2, false);
     lua_settop(L, 3);
     if (a->width == 1)
-        take_number(L, a, row, row);
+        take_number(L, a, row, "array", row, name_of(a->is_whole));
     else
         take_row(L, a, row);
     return 0;

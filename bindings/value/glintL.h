@@ -120,6 +120,18 @@ typedef struct glintL_array {
 
 /// Returns NULL if the value at index is not an array.
 glintL_array *glintL_to_array(lua_State *L, int index);
+/// A list of numbers in a script.
+typedef struct glintL_numbers {
+    const char *path; ///< names the list in messages
+    const char *what; ///< names one number; NULL: "number" or "whole number"
+    size_t per; ///< numbers that messages count as one entry; 0: 1
+    bool is_whole;
+} glintL_numbers;
+
+/// Replaces the list of `count` numbers at `index` by an array.
+glintL_array *glintL_take_list(lua_State *L, int index, const glintL_numbers *numbers, size_t count);
+/// Replaces the string at `index` by an array of the numbers packed in it: 'f' float, 'd' double, 'u' uint32_t.
+glintL_array *glintL_take_packed(lua_State *L, int index, char format);
 /// Pushes an array whose numbers are not set.
 glintL_array *glintL_push_array(lua_State *L, size_t count, size_t width, bool is_whole);
 /// Pushes the result of an operator (LUA_OPADD, _OPSUB, _OPMUL or _OPDIV) of the values at 1 and 2, one of them an array.

@@ -154,6 +154,32 @@ function tests.shapes()
   local corners = glint.array { { -1, -1, 0 }, { 1, -1, 0 }, { 0, 1, 0 } }
   check(pictures(glint.mesh { vertices = corners, faces = { { 1, 2, 3 } } }) ==
     pictures(glint.mesh { vertices = corners:table(), faces = { { 1, 2, 3 } } }), "vertices of a mesh")
+  local square, faces = glint.array { { -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 } }, { { 1, 2, 3 }, { 1, 3, 4 } }
+  local face_index = { index = { 1, 2 }, materials = { red, blue } }
+  local function mesh(list)
+    return glint.mesh { vertices = square, faces = list, index = face_index.index, materials = face_index.materials }
+  end
+  want = pictures(mesh(faces))
+  check(want == pictures(mesh(glint.array(faces, "integer"))), "faces of a mesh in an array")
+  check(want == pictures(mesh(glint.array({ 1, 2, 3, 1, 3, 4 }, "integer"))), "faces of a mesh in a flat array")
+  face_index.index = glint.array({ 1, 2 }, "integer")
+  check(want == pictures(mesh(faces)), "materials of faces in an array")
+  raises("mesh.faces[2]: vertex 1 .. 4 expected, got 5", mesh, glint.array({ { 1, 2, 3 }, { 1, 3, 5 } }, "integer"))
+  raises("mesh.faces: list of faces, array of three integers a row", mesh, glint.array(faces))
+  raises("mesh.faces: 3 numbers a triangle expected, got 4 numbers", mesh, glint.array({ 1, 2, 3, 4 }, "integer"))
+  raises("mesh.faces[2]: number of a vertex expected, got 0.5", mesh, { 1, 2, 3, 0.5, 2, 3 })
+  raises("mesh.index: array of whole numbers expected", glint.mesh,
+    { vertices = square, faces = faces, index = glint.array { 1, 2 }, materials = { red, blue } })
+  local path = folder .. "/picture.png"
+  assert(image:save(path))
+  local read = glint.read_image(path)
+  local all, off = read:array(), 0
+  for i = 0, #all - 1 do
+    local r, g, b = read:pixel(i % 48, i // 48)
+    local row = all[i + 1]
+    off = off + ((row.x == r and row.y == g and row.z == b) and 0 or 1)
+  end
+  check(off == 0 and all:max().x > 0.1, "a picture as an array: %d pixels differ", off)
 end
 
 -- Numbers that are hard to round, and forms of each. The seed is fixed.

@@ -83,17 +83,11 @@ end
 function tests.the_uncertainty_is_that_of_the_noise()
   math.randomseed(7)
   local image, sigma = render(TRUE), {}
-  local clean = image:bytes()
   for _, noise in ipairs { 0.01, 0.001 } do
-    local list, at = {}, 1
-    for i = 1, 3 * image.width * image.height do
-      local x
-      x, at = ("<f"):unpack(clean, at)
-      local normal = math.sqrt(-2 * math.log(1 - math.random())) * math.cos(2 * math.pi * math.random())
-      list[i] = ("<f"):pack(x + noise * normal)
-    end
-    local bytes = table.concat(list)
-    local noisy = { width = image.width, height = image.height, bytes = function() return bytes end }
+    local rows = {}
+    local function normal() return math.sqrt(-2 * math.log(1 - math.random())) * math.cos(2 * math.pi * math.random()) end
+    for i = 1, image.width * image.height do rows[i] = { normal(), normal(), normal() } end
+    local noisy = image:array() + noise * glint.array(rows)
     local found = fit.run { target = noisy, start = START, render = render, steps = 40 }
     check(found.converged and math.abs(found.error / noise - 1) < 0.1, "what is left is the noise, not %g", found.error)
     for name, want in pairs(TRUE) do
@@ -123,13 +117,15 @@ end
 
 function tests.mistakes_have_messages()
   raises("fit: a table { target, start, render } expected, got nil")
-  raises("fit: target: a file name, a picture or an image expected, got nil", { start = START, render = render })
+  raises("fit: target: a file name, a picture, an image or an array expected, got nil", { start = START, render = render })
   raises("fit: render: function(values, passes) expected, got nil", { target = PATH, start = START })
   raises("fit: start[1]: { name, number } expected", { target = PATH, start = { { "x" } }, render = render })
   raises("fit: stat: no such option", { target = PATH, stat = {} })
   raises("no_photo.png: No such file", { target = "no_photo.png", start = START, render = render })
   raises("fit: the target is 4 x 4, the picture 40 x 30",
     { target = scene:render { width = 4, height = 4 }, start = START, render = render })
+  raises("fit: the target is array of 16 x 3 numbers, the picture 40 x 30",
+    { target = scene:render { width = 4, height = 4 }:array(), start = START, render = render })
   raises("fit: the picture does not change with q", { target = render(TRUE), start = { { "q", 1 } }, render = function(v, passes)
     lamp.intensity = 1 + 0 * v.q
     return scene:render { width = 40, height = 30, passes = passes }

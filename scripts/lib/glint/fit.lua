@@ -3,7 +3,8 @@
 -- shortens steps that would increase the difference.
 --     local fit = require "glint.fit"
 --     local found = fit.run {
---       target = "photo.png",                              -- or a .pfm, a picture of glint.read_image, an image
+--       target = "photo.png",                              -- or a .pfm, a picture of glint.read_image, an image, or an
+--                                                          -- array as of image:array
 --       start = { { "lamp_x", -1 }, { "power", 1, least = 0.01 } },
 --       render = function(v, passes)                       -- numbers by their names
 --         lamp.x, lamp.intensity = v.lamp_x, v.power
@@ -19,28 +20,23 @@ local fit = {}
 
 local FIELDS = { target = true, start = true, render = true, steps = true, tolerance = true, report = true }
 local DAMPING_MAX = 1e12 -- more damping means that no step helps
-local BATCH = 60 -- numbers unpacked at once
 
 local function fail(...) error("fit: " .. string.format(...), 0) end
 
-local function numbers_of(picture, pass)
-  local text, list, at = picture:bytes(pass), {}, 1
-  local format = "<" .. ("f"):rep(BATCH)
-  for n = 0, #text // 4 - BATCH, BATCH do
-    table.move({ format:unpack(text, at) }, 1, BATCH, n + 1, list)
-    at = at + 4 * BATCH
-  end
-  for n = #list + 1, #text // 4 do list[n], at = ("<f"):unpack(text, at) end
-  return list
-end
-
--- Returns the target's numbers, and flags for those that are not clipped.
+-- Returns the target's numbers, and a factor for each: 0 for those that are clipped.
 local function read_target(target)
   local is_png = type(target) == "string" and target:lower():match "%.png$"
   local picture = type(target) == "string" and glint.read_image(target) or target
-  local list, counts = numbers_of(picture), {}
-  for i, x in ipairs(list) do counts[i] = not (is_png and x >= 1) end
-  return { list = list, counts = counts, width = picture.width, height = picture.height }
+  local is_array = tostring(picture):find "^array of "
+  local list = is_array and picture or picture:array()
+  local form = is_array and tostring(list) or ("%d x %d"):format(picture.width, picture.height)
+  return { list = list, counts = is_png and 1 - list:floor() or list * 0 + 1, form = form,
+    width = not is_array and picture.width }
+end
+
+local function total(array)
+  local sum = array:sum()
+  return sum.x + sum.y + sum.z
 end
 
 -- Returns the inverse of a symmetric matrix; nil if it is singular.
@@ -68,30 +64,20 @@ end
 
 -- Returns the sum of the squared differences between a picture and the target, and the normal equations.
 local function equations(image, target, names)
-  if image.width ~= target.width or image.height ~= target.height then
-    fail("the target is %d x %d, the picture %d x %d", target.width, target.height, image.width, image.height)
+  local got, list = image:array(), target.list
+  if #got ~= #list or list.width ~= 3 or target.width and target.width ~= image.width then
+    fail("the target is %s, the picture %d x %d", target.form, image.width, image.height)
   end
-  local got, slopes, n, sum, used = numbers_of(image), {}, #names, 0, 0
-  for i, name in ipairs(names) do slopes[i] = numbers_of(image, "d:" .. name) end
-  local a, b = {}, {}
-  for i = 1, n do
-    a[i], b[i] = {}, 0
-    for j = 1, n do a[i][j] = 0 end
-  end
-  for k, want in ipairs(target.list) do
-    if target.counts[k] then
-      local rest = want - got[k]
-      sum, used = sum + rest * rest, used + 1
-      for i = 1, n do
-        local s = slopes[i][k]
-        b[i] = b[i] + s * rest
-        for j = i, n do a[i][j] = a[i][j] + s * slopes[j][k] end
-      end
+  local rest, slopes, a, b = (list - got) * target.counts, {}, {}, {}
+  for i, name in ipairs(names) do
+    slopes[i], a[i] = image:array("d:" .. name) * target.counts, {}
+    b[i] = total(slopes[i] * rest)
+    for j = 1, i do
+      a[i][j] = total(slopes[i] * slopes[j])
+      a[j][i] = a[i][j]
     end
   end
-  for i = 1, n do
-    for j = 1, i - 1 do a[i][j] = a[j][i] end
-  end
+  local sum, used = total(rest * rest), total(target.counts)
   return { a = a, b = b, sum = sum, used = used, error = math.sqrt(sum / math.max(used, 1)) }
 end
 
@@ -121,7 +107,7 @@ local function check(options)
       fail("%s: no such option; the options are target, start, render, steps, tolerance, report", name)
     end
   end
-  if options.target == nil then fail("target: a file name, a picture or an image expected, got nil") end
+  if options.target == nil then fail("target: a file name, a picture, an image or an array expected, got nil") end
   if type(options.render) ~= "function" then
     fail("render: function(values, passes) expected, got %s", type(options.render))
   end
