@@ -32,6 +32,7 @@ const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t 
         array = glintL_take_packed(L, many->index, 'u');
     } else if (!array) {
         glintL_refuse(L, many->index, path, "array, table or packed string of numbers");
+        return NULL;
     }
     if (!array->is_whole || array->width != 1)
         glintL_refuse(L, many->index, path, "array of whole numbers");

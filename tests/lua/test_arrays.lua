@@ -156,8 +156,8 @@ function tests.shapes()
     pictures(glint.mesh { vertices = corners:table(), faces = { { 1, 2, 3 } } }), "vertices of a mesh")
   local square, faces = glint.array { { -1, -1, 0 }, { 1, -1, 0 }, { 1, 1, 0 }, { -1, 1, 0 } }, { { 1, 2, 3 }, { 1, 3, 4 } }
   local face_index = { index = { 1, 2 }, materials = { red, blue } }
-  local function mesh(list)
-    return glint.mesh { vertices = square, faces = list, index = face_index.index, materials = face_index.materials }
+  local function mesh(given_faces)
+    return glint.mesh { vertices = square, faces = given_faces, index = face_index.index, materials = face_index.materials }
   end
   want = pictures(mesh(faces))
   check(want == pictures(mesh(glint.array(faces, "integer"))), "faces of a mesh in an array")
@@ -173,13 +173,13 @@ function tests.shapes()
   local path = folder .. "/picture.png"
   assert(image:save(path))
   local read = glint.read_image(path)
-  local all, off = read:array(), 0
-  for i = 0, #all - 1 do
-    local r, g, b = read:pixel(i % 48, i // 48)
-    local row = all[i + 1]
-    off = off + ((row.x == r and row.y == g and row.z == b) and 0 or 1)
+  local pixels, off = read:array(), 0
+  for i = 0, #pixels - 1 do
+    local x, y, z = read:pixel(i % 48, i // 48)
+    local row = pixels[i + 1]
+    off = off + ((row.x == x and row.y == y and row.z == z) and 0 or 1)
   end
-  check(off == 0 and all:max().x > 0.1, "a picture as an array: %d pixels differ", off)
+  check(off == 0 and pixels:max().x > 0.1, "a picture as an array: %d pixels differ", off)
 end
 
 -- Numbers that are hard to round, and forms of each. The seed is fixed.
