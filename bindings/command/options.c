@@ -128,10 +128,16 @@ static bool read_shard(cli_options *options, const cli_option *option, char *tex
 }
 
 // Reads an option that has the name of a field of scene:render{}. Without a text it is a switch.
+// Returns the number of the field of scene:render{} that an option sets.
+static int field_of(const cli_option *option)
+{
+    return glintL_render_find(strcmp(option->name, "max-depth") == 0 ? "max_depth" : option->name);
+}
+
 static bool read_render(cli_options *options, const cli_option *option, char *text, char *message)
 {
     glintL_render scratch = glintL_render_default();
-    int field = glintL_render_find(option->name);
+    int field = field_of(option);
     const char *value = text ? text : "true";
     options->request.render_text[field] = value;
     return glintL_render_set_text(&scratch, field, value, message);
@@ -318,7 +324,9 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "size", 0, "WxH", SHOWN | CLI_PUBLISH, read_size, .help = "width and height in pixels",
       .suggest = "640x360 1280x720 1920x1080 3840x2160" },
     { "dpi", 0, "N", SHOWN | CLI_SHEET | CLI_RELIGHT, read_render, .help = "pixels per inch, for print" },
-    GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
+    GLINTL_RENDER_LIST(FIELD, OPTION) { "max-depth", 0, "N", SHOWN, read_render,
+                                        .help = "segments of a path through mirrors and glass" },
+    { "adaptive", 0, "X", SHOWN, read_render,
                                         .help = "take all samples only where neighbouring pixels differ by more than X",
                                         .suggest = "0.3 0.1 0.03 0.01" },
     { "until", 0, "ERROR", CLI_RENDER, read_real, .help = "take samples until the picture's error is estimated at ERROR",
@@ -395,7 +403,7 @@ static void add_value(lua_State *L, const cli_options *options, const cli_option
     else if (option->read == read_text || option->read == read_word)
         glintL_set_text(L, option->name, *(const char *const *)at);
     else if (option->read == read_render)
-        glintL_set_text(L, option->name, options->request.render_text[glintL_render_find(option->name)]);
+        glintL_set_text(L, option->name, options->request.render_text[field_of(option)]);
     else if (option->read == read_count && *(const int64_t *)at)
         glintL_set_whole(L, option->name, *(const int64_t *)at);
     else if (option->read == read_int && *(const int *)at)

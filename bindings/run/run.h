@@ -392,6 +392,8 @@ void glintL_warn_of_shutter(glintL_run *run);
 /// Computes the axes of a camera's view, of length 1. False: the camera looks along its `up`, so that the engine
 /// chooses the sides.
 bool glintL_view_axes(const glint_camera_desc *camera, double forward[3], double right[3], double up[3]);
+/// Returns whether some shape may be in a camera's view: its bounding ball is not outside.
+bool glintL_may_show(const glint_scene *scene, const glint_camera_desc *camera, const glint_render_desc *desc);
 /// Computes a ball around the scene's shapes except planes; false: there are none.
 bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius);
 /// own_camera.c: gives a scene without a camera one that has its shapes in view, with a warning. The scene's userdata

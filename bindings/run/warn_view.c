@@ -224,31 +224,48 @@ static void join_balls(ball *all, const ball *b)
     all->radius = radius;
 }
 
-// Adds the bounds of a shape to `all`, whose radius is negative while it is empty. A plane has no ball.
-static void bound_shape(const glint_shape *shape, const glint_transform *around, ball *all)
+// Adds the bounds of a shape to `all`, whose radius is negative while it is empty. A plane has no ball. With a view, adds
+// only balls that may be in it.
+static void bound_shape(const glint_shape *shape, const glint_transform *around, const view *v, ball *all)
 {
     ball b;
     const glint_transform placed = glint_transform_product(around, &glint_shape_get(shape)->transform);
     for (size_t i = 0; i < glint_group_count(shape); i++)
-        bound_shape(glint_group_child(shape, i), &placed, all);
+        bound_shape(glint_group_child(shape, i), &placed, v, all);
     if (!find_ball(shape, &b))
         return;
     move_ball(&placed, &b);
+    if (v && is_outside(v, &b, NULL))
+        return;
     if (all->radius < 0)
         *all = b;
     else
         join_balls(all, &b);
 }
 
-bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius)
+static void bound_shapes(const glint_scene *scene, const view *v, ball *all)
 {
     const glint_transform here = glint_transform_identity();
-    ball all = { .radius = -1 };
+    *all = (ball) { .radius = -1 };
     for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
-        bound_shape(glint_scene_shape_at(scene, i), &here, &all);
+        bound_shape(glint_scene_shape_at(scene, i), &here, v, all);
+}
+
+bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius)
+{
+    ball all;
+    bound_shapes(scene, NULL, &all);
     memcpy(center, all.center, sizeof all.center);
     *radius = all.radius;
     return all.radius > 0 && isfinite(all.radius);
+}
+
+bool glintL_may_show(const glint_scene *scene, const glint_camera_desc *camera, const glint_render_desc *desc)
+{
+    view v;
+    ball all;
+    bound_shapes(scene, make_view(camera, desc, &v) ? &v : NULL, &all);
+    return all.radius >= 0;
 }
 
 // Returns whether a shape, or any shape in a group, has a mirror, a transparent material or holes. Counts the shapes

@@ -53,6 +53,8 @@ struct glint_mesh_library {
     glint_mesh_entry first_flat; ///< the first material whose bump map has no height; it does not own its pictures
     size_t invisible; ///< number of materials that transmit all light
     char first_invisible[GLINT_NAME_SIZE];
+    size_t bright; ///< number of colours above 1
+    char first_bright[GLINT_NAME_SIZE + 80]; ///< the first one: "'paint' has Kd 255 0 0"
     bool reported; ///< whether a warning has already reported a file that could not be read
 };
 

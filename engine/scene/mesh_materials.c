@@ -1,6 +1,7 @@
 /// Makes the materials that the faces of .obj files use, from the entries that glint_mesh_library_read stored.
 #include "engine/scene/mesh_entry.h"
 
+#include "engine/base/number.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 
@@ -168,10 +169,19 @@ static void polish(glint_mesh_entry *e)
     vec_copy(e->desc.mirror, e->desc.specular);
 }
 
+/// Notes a colour above 1, which is probably a colour of bytes.
+static void note_bright(glint_mesh_library *library, const glint_mesh_entry *e, const char *word, const double c[3])
+{
+    if (fmax(fmax(c[0], c[1]), c[2]) > 1 && library->bright++ == 0)
+        glint_print(library->first_bright, sizeof library->first_bright, "'%s' has %s %g %g %g", e->desc.name, word, c[0], c[1], c[2]);
+}
+
 /// Completes the fields of a material. If it is transparent, the surface's own light is multiplied by d.
 static void finish_fields(glint_mesh_library *library, glint_mesh_entry *e)
 {
     const bool is_dull = e->illum < 2;
+    note_bright(library, e, "Kd", e->desc.diffuse);
+    note_bright(library, e, "Ks", e->desc.specular);
     if (e->clear >= 1 && !e->map[GLINT_MAP_D] && library->invisible++ == 0)
         memcpy(library->first_invisible, e->desc.name, sizeof library->first_invisible);
     polish(e);
@@ -324,6 +334,14 @@ static void warn_invisible(const glint_mesh_library *library, const glint_mesh_r
                         library->first_invisible, spell_more(library->invisible, more));
 }
 
+static void warn_bright(const glint_mesh_library *library, const glint_mesh_reader *reader)
+{
+    char more[32];
+    if (library->bright)
+        glint_mesh_warn(reader->desc, reader->text.path, "material %s%s: numbers 0 .. 1 expected; a colour of bytes is divided by 255",
+                        library->first_bright, spell_more(library->bright, more));
+}
+
 /// Warns once about undefined materials, unless a file that could not be read explains them.
 static void warn_missing(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
@@ -348,6 +366,7 @@ glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_me
         warn_missing(library, reader);
         warn_flat(library, reader);
         warn_invisible(library, reader);
+        warn_bright(library, reader);
     }
     return status;
 }

@@ -403,6 +403,9 @@ options() {
     prints "--version" '^glint [0-9]'
     exits 0 "--help" --help
     exits 2 "no script" --json
+    exits 0 "--max-depth" ten.lua -f 1 -o none --max-depth 0
+    exits 2 "--max-depth" ten.lua -o none --max-depth -1
+    says "--max-depth" 'max-depth: whole number 0 \.\. 2147483648 expected, got .-1'
     exits 2 "unknown option" ten.lua --thraeds 2
     says "unknown option names the nearest" "did you mean '--threads'"
     exits 2 "an option by another program's name" ten.lua --widht 300

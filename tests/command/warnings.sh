@@ -403,6 +403,14 @@ black 'ball(0, 0, 40, 1), lamp(0, 0, 20, 1)'
 warns "black: the camera looks away" "frame 2: the picture is black: the camera looks past all shapes" -f 2
 black 'ball(0, 0, 0, 1), lamp(0, 0, -9, 1)'
 warns "black: lit from behind" "frame 1: the picture is black: no light reaches the visible surfaces"
+for ball in 'ball(0.02, 0.03, 0, 0.001)' 'glint.group { ball(0.05, 0.05, 0, 0.04) }'; do
+    black "$ball"
+    sed -i 's/^local camera, ambient = \(.*\), 0$/local camera, ambient = \1, 1/' scene.lua
+    warns "black: $ball between pixels" "frame 1: the picture is black: the shapes in view are so small or thin that none covers the centre of a pixel"
+done
+black 'glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { diffuse = 0 } }'
+sed -i 's/^local camera, ambient = \(.*\), 0$/local camera, ambient = \1, 1/' scene.lua
+warns "black: nothing reflects the ambient light" "frame 1: the picture is black: no light leaves the visible surfaces: their materials reflect none of the scene's ambient light"
 black 'ball(0, 0, 0, 1), lamp(0, 0, 9, 1)'
 silent "not a picture with light"
 sed -i '1i function change(objects, n) objects[2].intensity = n - 1 end' scene.lua

@@ -89,5 +89,12 @@ function tests.objects_of_a_sweep()
   wrong("did you mean 'attenuation'?", "glint.point_light { position = { 0, 1, 0 }, falloff = 2 }")
 end
 
+-- Fields of a frame in a scene.
+function tests.fields_of_a_frame()
+  wrong("scene.max_depth: no such field; it belongs to scene:render and glint.animation, or to the command as --max-depth",
+    "glint.scene { max_depth = 3 }")
+  wrong("scene.samples: no such field; it belongs to scene:render and glint.animation", "scene.samples = 4")
+end
+
 tally.run(tests)
 tally.finish()
