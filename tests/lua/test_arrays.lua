@@ -182,6 +182,31 @@ function tests.shapes()
   check(off == 0 and pixels:max().x > 0.1, "a picture as an array: %d pixels differ", off)
 end
 
+-- Colours of a cloud, one material each; a row that is refused has its line, also after comments.
+function tests.colored_points()
+  local rows = { "label,x,y,z,red,green,blue" }
+  local function name_of(i) return ("#%02x%02x%02x"):format(i % 3 * 100, i % 5 * 50, i * 7 % 256) end
+  for i = 1, 900 do
+    rows[#rows + 1] = i % 100 == 0 and "# a comment\n\n" or nil
+    rows[#rows + 1] = ("%s,%d,0,%d,%d,%d,%d"):format(i % 4 == 0 and "own" or "C", i, -i, i % 3 * 100, i % 5 * 50, i * 7 % 256)
+  end
+  local function read(text)
+    local set = particles.new { kinds = { own = { color = "red", radius = 2 } }, radius = nil }
+    return set:add_frame(points.frame(write("colors.csv", text)))
+  end
+  local set, off = read(table.concat(rows, "\n") .. "\n"), 0
+  local all = set:arrays()
+  for i = 1, 900 do
+    local row, material = all.data[i], all.materials[all.index[i]]
+    local want = i % 4 == 0 and "own" or name_of(i)
+    off = off + ((row[1] == i and row[3] == -i and material.name == want) and 0 or 1)
+  end
+  check(off == 0 and set.counts.own == 225 and set.counts.C == 675, "%d points of 900 differ", off)
+  check(all.data[4][4] == 2 and all.data[5][4] < 2 and set.low[1] < 1 and set.high[1] == 902, "their radii and box")
+  rows[700] = rows[700]:gsub("%d+$", "256")
+  raises("colors.csv:712: red, green and blue 0 .. 255 expected, got \"256\"", read, table.concat(rows, "\n"))
+end
+
 -- Numbers that are hard to round, and forms of each. The seed is fixed.
 local function spellings()
   local list = { "0", "-0.0", "1", "+2.5", ".5", "5.", "1e22", "1e23", "8.5e-5", "9007199254740993", "1.7976931348623157e308",

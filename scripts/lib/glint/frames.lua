@@ -96,7 +96,7 @@ end
 --- a new label or needs more care; it returns a number for the label, or nil. Between them, calls rows(n, arrays) for
 --- n atoms: arrays.label has the numbers of their labels (nil if there is no column of labels: all have the last
 --- number); arrays.x, y, z and radius (nil: none) the coordinates; arrays[i] the column names[i], NaN where a value is
---- missing.
+--- missing. If rows returns false, these atoms and all after them are read one by one.
 ---@param names string[]
 ---@param size string  "size": radii > 0 only; "number": any
 ---@param atom function
@@ -109,7 +109,7 @@ function frame:bulk(names, size, atom, rows)
     for i, name in ipairs(rows and order or {}) do arrays[name] = select(i, ...) end
     if rows and place then arrays.x, arrays.y, arrays.z = place(arrays.x, arrays.y, arrays.z) end
     if rows and self.layout.is_diameter then arrays.radius = arrays.radius / 2 end
-    if rows then rows(n, arrays) end
+    return not rows or rows(n, arrays)
   end
   local function one(label, ...)
     if label == nil then return false end
@@ -117,7 +117,9 @@ function frame:bulk(names, size, atom, rows)
     if not number or not reader then return true end
     if self.layout.label then reader:learn(word_of(self), number) end
     local most = self.expected and self.expected - self.done or math.maxinteger
-    self.done = self.done + self.source:rows(reader, most, take)
+    local count, left = self.source:rows(reader, most, take)
+    self.done = self.done + count
+    if left then reader = nil end
     return true
   end
   while not self.is_done and one(self:take(self.next_atom())) do end
@@ -130,28 +132,34 @@ end
 ---@return table all
 function frame:arrays(...)
   local names, all, numbers = { ... }, { labels = {} }, {}
-  local keys, parts = { "label", "x", "y", "z", "radius" }, {}
+  local keys, parts, single, count, last = { "label", "x", "y", "z", "radius" }, {}, {}, 0, nil
   for i in ipairs(names) do keys[5 + i] = i end
-  for _, key in ipairs(keys) do parts[key] = {} end
+  for _, key in ipairs(keys) do parts[key], single[key] = {}, {} end
+  local function pack() -- moves the atoms that were read one by one into arrays
+    for key, list in pairs(single) do
+      if #list > 0 then parts[key][#parts[key] + 1] = glint.array(list, key == "label" and "integer" or nil) end
+      single[key] = {}
+    end
+    count = 0
+  end
   self:begin(names)
   self:bulk(names, "number", function(label, x, y, z, radius, ...)
-    local values = { ... }
+    count = count + 1
     for i, name in ipairs(names) do
-      values[i] = frames.value_of(values[i])
-      if type(values[i]) ~= "number" then self:fail(("a number in the column %q"):format(name), tostring(values[i])) end
+      local value = frames.value_of((select(i, ...)))
+      if type(value) ~= "number" then self:fail(("a number in the column %q"):format(name), tostring(value)) end
+      single[i][count] = value
     end
-    numbers[label] = numbers[label] or #all.labels + 1
-    all.labels[numbers[label]] = label
-    values.label, values.x, values.y, values.z, values.radius = numbers[label], x, y, z, radius
-    for key, list in pairs(parts) do
-      list[#list + 1] = values[key] and glint.array({ values[key] }, key == "label" and "integer" or nil)
-    end
-    return numbers[label]
+    last = numbers[label] or #all.labels + 1
+    numbers[label], all.labels[last] = last, label
+    single.label[count], single.x[count], single.y[count], single.z[count], single.radius[count] = last, x, y, z, radius
+    return last
   end, function(n, arrays)
-    local same = parts.label[#parts.label]
-    arrays.label = arrays.label or glint.array(n, "integer") + same[#same]
+    pack()
+    arrays.label = arrays.label or glint.array(n, "integer") + last
     for key, list in pairs(parts) do list[#list + 1] = arrays[key] end
   end)
+  pack()
   for _, key in ipairs(keys) do parts[key] = glint._join(parts[key], 1) end
   all.kinds = #all.labels > 0 and parts.label or glint.array(0, "integer")
   all.positions = glint.array { parts.x, parts.y, parts.z }

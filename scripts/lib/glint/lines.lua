@@ -168,19 +168,21 @@ function source:back()
 end
 
 --- Reads up to `most` rows with a reader of glint._row_reader. Stops before a line that the reader does not accept;
---- next() returns that line. Calls rows(n, ...) for every block of n rows, with the reader's arrays.
+--- next() returns that line. Calls rows(n, ...) for every block of n rows, with the reader's arrays; if it returns
+--- false, the block is left to next().
 ---@param reader userdata
 ---@param most integer
 ---@param rows function
 ---@return integer count
+---@return boolean? left  rows returned false
 function source:rows(reader, most, rows)
   local total = 0
   local function take(at, n, passed, ...)
+    if n > 0 and rows(n, ...) == false then return true end
     self.at, self.number, total = at, self.number + passed, total + n
-    if n > 0 then rows(n, ...) end
   end
   while total < most do
-    take(reader:read(self.block, math.min(self.at, #self.block + 1), most - total))
+    if take(reader:read(self.block, math.min(self.at, #self.block + 1), most - total)) then return total, true end
     if total == most or not self.file or self.block:find("\n", self.at, true) then break end
     line_end(self)
   end

@@ -246,36 +246,56 @@ local function keep_box(self, box)
   self.box = same and box
 end
 
--- Adds the points of a frame that has colours.
-local function add_colored(self, frame)
-  local scale = 255 / frame.color.most
-  local function code_of(v)
-    if math.type(v) and v >= 0 and (v * scale <= 255 or frame.color.most == 1 and v <= 16) then
-      return math.floor(math.min(v * scale, 255) + 0.5)
+-- Returns the colour of a point, 0xrrggbb; nil for NaN.
+local function code_of(frame, ...)
+  local most, code = frame.color.most, 0
+  for _, v in ipairs { ... } do
+    if v ~= v then return nil end
+    local level = math.type(v) and v >= 0 and v * (255 / most)
+    if not level or level > 255 and (most ~= 1 or v > 16) then
+      frame:fail(("red, green and blue 0 .. %d"):format(most), tostring(v))
     end
-    frame:fail(("red, green and blue 0 .. %d"):format(frame.color.most), tostring(v))
+    code = code << 8 | math.floor(math.min(level, 255) + 0.5)
   end
-  for label, x, y, z, radius, r, g, b in frame:atoms("red", "green", "blue") do
-    local is_lost = r ~= r or g ~= g or b ~= b -- NaN
-    local code = not is_lost and code_of(r) << 16 | code_of(g) << 8 | code_of(b) or nil
-    local done, expected, got = put(self, frame, label, x, y, z, radius, nil, code)
-    if not done then frame:fail(expected, got) end
-  end
-  return self
+  return code
 end
 
--- Adds n spheres in arrays; `last` is their material without a column of labels.
-local function add_rows(self, n, arrays, last)
-  local index, values = arrays.label or glint.array(n, "integer") + last, arrays[1]
-  pack(self)
-  local radii = arrays.radius
-  if not radii then
-    local of_kind = {}
-    for i = 1, #self.materials do of_kind[i] = 0 end
-    for _, kind in pairs(self.kinds) do of_kind[kind.place or 0] = kind.radius end
-    of_kind[0] = nil
-    radii = glint.array(of_kind):at(index)
+-- Returns the colours of points in arrays, as whole numbers; nil if some need more care.
+local function codes_of(frame, arrays)
+  local codes, scale = 0, 255 / frame.color.most
+  for i = 1, 3 do
+    local v, sum = arrays[i], arrays[i]:sum()
+    if sum ~= sum or v:min() < 0 or v:max() * scale > 255 then return nil end
+    codes = codes * 256 + (v * scale + 0.5):floor()
   end
+  return codes:bins(-0.5, 0xffffff + 0.5, 1 << 24)
+end
+
+-- Returns the materials of points: kinds by the numbers in `labels`, codes from codes_of.
+local function places_of_colors(self, kinds, labels, codes)
+  for i = 1, #codes do
+    local kind = kinds[labels[i]]
+    codes[i] = kind.is_own and place_of(self, kind) or place_of_color(self, kind, codes[i] - 1)
+  end
+  return codes
+end
+
+-- Adds n spheres in arrays. labels: the number of each one's kind in the list `kinds`. Returns false if they have
+-- colours that need more care.
+local function add_rows(self, frame, n, arrays, kinds, labels)
+  local radii, places, index, values = {}, {}, nil, arrays[1]
+  if frame.color and not self.color_by then
+    values, index = nil, codes_of(frame, arrays)
+    if not index then return false end
+    places_of_colors(self, kinds, labels, index)
+  end
+  pack(self)
+  local counts = labels:counts()
+  for i, kind in ipairs(kinds) do
+    radii[i], places[i] = kind.radius, kind.place
+    self.counts[kind.name] = self.counts[kind.name] + (counts[i] or 0)
+  end
+  radii = arrays.radius or glint.array(radii):at(labels)
   local least, most = radii:min(), radii:max()
   for axis, name in ipairs { "x", "y", "z" } do
     local at = arrays[name]
@@ -286,18 +306,12 @@ local function add_rows(self, n, arrays, last)
     end
   end
   self.data[#self.data + 1] = glint.array { arrays.x, arrays.y, arrays.z, radii }
-  self.index[#self.index + 1] = index
+  self.index[#self.index + 1] = index or glint.array(places, "integer"):at(labels)
   if values then
     self.values[#self.values + 1] = values
     widen(self, values:min(), values:max())
   end
   self.count = self.count + n
-  local counts = index:counts()
-  for name, kind in pairs(self.kinds) do
-    if name == kind.name and kind.place then
-      self.counts[name] = self.counts[name] + (counts[kind.place] or 0)
-    end
-  end
 end
 
 --- Adds the atoms of a frame from a reader; points of a coloured cloud keep their colours. An atom that cannot be added
@@ -305,15 +319,22 @@ end
 ---@return table set  the set itself
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end
-  if frame.color and not self.color_by then return add_colored(self, frame) end
-  local names, last = { self.color_by and self.color_by.column }, nil
+  local is_colored = frame.color and not self.color_by
+  local names = is_colored and { "red", "green", "blue" } or { self.color_by and self.color_by.column }
+  local kinds, numbers, last = {}, {}, nil
   frame:begin(names)
-  frame:bulk(names, "size", function(label, x, y, z, radius, value)
-    local done, expected, got = put(self, frame, label, x, y, z, radius, value)
+  frame:bulk(names, "size", function(label, x, y, z, radius, value, ...)
+    local code
+    if is_colored then code, value = code_of(frame, value, ...), nil end
+    local done, expected, got = put(self, frame, label, x, y, z, radius, value, code)
     if not done then frame:fail(expected, got) end
-    last = self.kinds[label].place
+    local kind = self.kinds[label]
+    if not numbers[kind] then kinds[#kinds + 1], numbers[kind] = kind, #kinds + 1 end
+    last = numbers[kind]
     return last
-  end, function(n, arrays) add_rows(self, n, arrays, last) end)
+  end, function(n, arrays)
+    return add_rows(self, frame, n, arrays, kinds, arrays.label or glint.array(n, "integer") + last)
+  end)
   return self
 end
 
