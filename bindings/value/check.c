@@ -83,6 +83,10 @@ static void push_userdata(lua_State *L, int index)
     static const char prefix[] = "glint.";
     if (glintL_push_object_name(L, index))
         return;
+    if (glintL_to_dual(L, index)) {
+        lua_pushliteral(L, "a variable");
+        return;
+    }
     if (luaL_getmetafield(L, index, "__name") != LUA_TSTRING) {
         lua_pushliteral(L, "userdata");
         return;

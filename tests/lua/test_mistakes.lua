@@ -82,7 +82,7 @@ end
 
 -- Axes of a sweep that are no objects, and words of other programs.
 function tests.objects_of_a_sweep()
-  for got, value in pairs { dual = "glint.variable('v', 1)", vector = "glint.vector(1, 2, 3)", ["7"] = "7", ["function"] = "print" } do
+  for got, value in pairs { ["a variable"] = "glint.variable('v', 1)", vector = "glint.vector(1, 2, 3)", ["7"] = "7", ["function"] = "print" } do
     wrong("sweep.over[1][1]: object expected, got " .. got, ("glint.sweep { scene = scene, over = { { %s, 'radius', { 1, 2 } } } }"):format(value))
   end
   wrong("falloff: no such field; did you mean 'attenuation'?", "lamp.falloff = 2")
