@@ -23,8 +23,8 @@
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
 -- --size sets the size of the pictures. -o 'set/%03d.png' names them, and the other files go into the same folder. The
 -- last picture, after the last light, is the scene in white ambient light.
--- Bright materials (gold, glossy) exceed white: --exposure auto finds one exposure for the whole set that clips
--- nothing, and --exposure -1.5 sets it. The intensities are scaled to match.
+-- Bright materials (gold, glossy) exceed white: --exposure auto finds an exposure for each folder that clips nothing, and
+-- --exposure -1.5 sets one for all. The intensities in a folder are scaled to match.
 -- An interrupted job continues when it is run again, and --shard divides it between several machines.
 -- To use your own scene, add its shapes to `OBJECTS`; with a camera along -z the axes stay as above.
 local glint = require "glint"
@@ -137,7 +137,9 @@ local function render(shapes, look)
   end
   scene:remove(lamp)
   scene.ambient = 1
-  return scene:render { width = P.size, height = P.size, passes = "normal,depth" } -- nil: another machine's part
+  local truth = scene:render { width = P.size, height = P.size, passes = "normal,depth" }
+  -- nil: another machine's part, or the first run of --exposure auto, which writes nothing
+  return glint._exposure "" ~= false and truth or nil
 end
 
 local function painter(fields)
@@ -148,8 +150,8 @@ local function painter(fields)
   end
 end
 
--- Returns the factor of --exposure for pixel values. Files of numbers store unscaled light.
-local function gain(truth, file) return file:find "%.png$" and glint.pow(2, truth.exposure) or 1 end
+-- Returns the factor of --exposure for the pixel values of a picture. Files of numbers store unscaled light.
+local function gain(path) return path:find "%.png$" and glint.pow(2, glint._exposure(path) or 0) or 1 end
 
 local function write_glint()
   local lights, rows = {}, { "file,x,y,z,intensity\n" }
@@ -167,7 +169,7 @@ local function write_glint()
   end
   for k, light in ipairs(lights) do
     local file, x, y, z, intensity = table.unpack(light)
-    rows[k + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, intensity * gain(truth, file))
+    rows[k + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, intensity * gain(path(file)))
   end
   write(path "lights.csv", rows)
 end
@@ -186,7 +188,7 @@ local function write_diligent(object, material)
     return place .. ("%03d.png"):format(k)
   end)
   if not truth then return name, false end
-  local times = gain(truth, names[1]:sub(1, -2))
+  local times = gain(place .. names[1]:sub(1, -2))
   for k, color in ipairs(colors) do
     intensities[k] = ("%.17g %.17g %.17g\n"):format(color[1] * times, color[2] * times, color[3] * times)
   end

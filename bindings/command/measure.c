@@ -5,6 +5,7 @@
 // of a job finds the same values.
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 #include "bindings/command/cli.h"
 
@@ -20,15 +21,22 @@ void cli_hush_script(lua_State *L)
     lua_call(L, 1, 0);
 }
 
-static void report_exposure(cli_output *output, double stops, const glint_brightness *seen)
+// folder  NULL: of all pictures.
+static void report_exposure(cli_output *output, const char *stops, const char *folder, const glint_brightness *seen)
 {
     if (output->json) {
-        fprintf(output->data, "{\"event\":\"exposure\",\"stops\":%.2f", stops);
+        fprintf(output->data, "{\"event\":\"exposure\",\"stops\":%s", stops);
+        if (folder)
+            glintL_json(output->data, ",\"folder\":%s", folder);
         glintL_json(output->data, ",\"brightest\":%g", seen->most);
         fprintf(output->data, ",\"frames\":%" PRIu64 "}", seen->pictures);
         cli_end_line(output);
     } else if (!output->quiet) {
-        fprintf(stderr, "exposure %.2f: the brightest value of %" PRIu64 " picture%s is %.6g\n", stops, seen->pictures,
+        fprintf(stderr, "exposure %s", stops);
+        fputs(folder ? " in " : "", stderr);
+        if (folder)
+            glintL_put_text(stderr, folder, strlen(folder));
+        fprintf(stderr, ": the brightest value of %" PRIu64 " picture%s is %.6g\n", seen->pictures,
                 seen->pictures == 1 ? "" : "s", seen->most);
     }
 }
@@ -59,10 +67,16 @@ void cli_begin_measuring(const cli_options *options, cli_output *output, glintL_
 
 static void take_exposure(cli_options *options, cli_output *output, glintL_run *run, const glint_brightness *seen)
 {
-    const double stops = glint_exposure_for(seen->most);
-    snprintf(options->exposure, sizeof options->exposure, "%.2f", stops);
+    snprintf(options->exposure, sizeof options->exposure, "%.2f", glint_exposure_for(seen->most));
     run->request.render_text[glintL_render_find("exposure")] = options->exposure;
-    report_exposure(output, stops, seen);
+    for (size_t i = 0; i < run->folder_count; i++) {
+        glintL_folder_light *folder = &run->folders[i];
+        snprintf(folder->stops, sizeof folder->stops, "%.2f", glint_exposure_for(folder->seen.most));
+        if (run->folder_count > 1)
+            report_exposure(output, folder->stops, *folder->folder ? folder->folder : ".", &folder->seen);
+    }
+    if (run->folder_count < 2)
+        report_exposure(output, options->exposure, NULL, seen);
 }
 
 // Sets the range. If there is no range, no pass is shown in colours, and a warning says so.

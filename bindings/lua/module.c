@@ -87,6 +87,23 @@ static int output(lua_State *L)
     return 1;
 }
 
+// _exposure(output): returns the stops that --exposure sets for a picture of this name; nil without --exposure, false in
+// the run that finds the stops. Only for scripts/.
+static int exposure(lua_State *L)
+{
+    const glintL_run *run = glintL_get_run(L);
+    if (run->measures) {
+        lua_pushboolean(L, false);
+        return 1;
+    }
+    const glintL_folder_light *folder = glintL_find_folder(run, luaL_checkstring(L, 1));
+    const char *text = folder && *folder->stops ? folder->stops : run->request.render_text[glintL_render_find("exposure")];
+    lua_pushnil(L);
+    if (text && !lua_stringtonumber(L, text))
+        lua_pushnil(L);
+    return 1;
+}
+
 __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
 {
     static void (*const parts[])(lua_State *) = {
@@ -106,6 +123,7 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     glintL_set_function(L, "_other_kind", other_kind);
     glintL_set_function(L, "_warn", warn);
     glintL_set_function(L, "_output", output);
+    glintL_set_function(L, "_exposure", exposure);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
     glintL_set_own_function(L, "motion", "ease");

@@ -54,6 +54,7 @@ void glintL_run_destroy(glintL_run *run)
     free(run->params_text);
     glintL_forget_warnings(run);
     glintL_places_forget(run);
+    glintL_forget_folders(run);
     free(run);
 }
 

@@ -274,6 +274,13 @@ typedef struct glintL_written {
     int64_t index; ///< number of the first frame that it was written for
 } glintL_written;
 
+/// The light of the pictures in one folder.
+typedef struct glintL_folder_light {
+    char *folder; ///< with its slash; "": the working directory. Owned
+    glint_brightness seen;
+    char stops[16]; ///< the folder's exposure
+} glintL_folder_light;
+
 struct glintL_run {
     bool times_stages, counts_work;
     bool keeps_images; ///< every picture includes its linear beauty pass
@@ -320,6 +327,8 @@ struct glintL_run {
     bool finds_range; ///< the run also measures the pass that is scaled for viewing
     double range[2]; ///< range of that pass's values
     glint_brightness brightness; ///< brightness of data pictures; in a measuring run, of all pictures with integer values
+    glintL_folder_light *folders; ///< light of each folder's pictures, for --exposure auto
+    size_t folder_count;
     int64_t point, point_count; ///< number of the --sweep point, 1 .. point_count; 0 of 0: no sweep
     int64_t point_first; ///< frames numbered before this point
     int64_t earlier; ///< number of job lists already run
@@ -490,6 +499,12 @@ bool glintL_tone_is_data(const glint_tone_desc *tone);
 /// Adds a picture written with that tone to run->brightness, if its pixel values are data or the run measures. In plain
 /// Lua, warns about the first clipped picture at once.
 void glintL_look_at_brightness(glintL_run *run, const glint_image *image, const glint_tone_desc *tone);
+/// Adds a rendered picture of a measuring run to its folder: the part of its output before the name. A lack of memory
+/// fails the run.
+void glintL_note_folder(glintL_run *run, const char *output, const glint_image *image, const glint_tone_desc *tone);
+/// Returns the measured light of an output's folder; NULL: none was measured.
+const glintL_folder_light *glintL_find_folder(const glintL_run *run, const char *output);
+void glintL_forget_folders(glintL_run *run);
 /// Warns about clipped values of the run.
 void glintL_warn_of_clipping(glintL_run *run);
 

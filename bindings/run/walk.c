@@ -34,6 +34,9 @@ void glintL_run_apply(glintL_run *run, glintL_render *render)
     for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
         if (run->request.render_text[field]) // it was checked when it was read
             glintL_render_set_text(render, field, run->request.render_text[field], message);
+    const glintL_folder_light *folder = *render->output ? glintL_find_folder(run, render->output) : NULL;
+    if (folder && *folder->stops)
+        glintL_render_set_text(render, glintL_render_find("exposure"), folder->stops, message);
     render->own_samples = render->desc.samples;
     if (run->preview_side > 0)
         shrink(run, &render->desc);

@@ -247,6 +247,8 @@ void glintL_work_show(glintL_run *run, const glintL_work *work)
 {
     if (is_looked_at(run, work))
         glintL_look_at_brightness(run, work->image, &work->render.desc.tone);
+    if (run->measures && work->render.desc.codes && *work->render.output)
+        glintL_note_folder(run, work->render.output, work->image, &work->render.desc.tone);
     if (run->reporter.image)
         run->reporter.image(run->reporter.context, run, work);
 }

@@ -127,6 +127,36 @@ end
 os.exit(true)
 E2
 exits 0 "intensities follow" follow.lua -q
+# An exposure for each object's folder: the brightest value of each is just below white.
+two=("$root/scripts/photometric.lua" --set layout=diligent --set objects=sphere --set materials=matt,gold --set lights=3 --size 32x32)
+exits 0 "two objects" "${two[@]}" --set folder=two --exposure auto
+says "two objects: gold" '^exposure -[0-9.]+ in two/sphere_gold/: the brightest value of 3 pictures is '
+says "two objects: matt" '^exposure 0\.[0-9]+ in two/sphere_matt/: the brightest value of 3 pictures is '
+cat >each.lua <<'E2'
+local glint = require "glint"
+for _, name in ipairs { "matt", "gold" } do
+  local times, most = tonumber(io.open(("two/sphere_%s/light_intensities.txt"):format(name)):read "n"), 0
+  for k = 1, 3 do
+    local image = glint.read_image(("two/sphere_%s/%03d.png"):format(name, k))
+    for y = 0, 31 do for x = 0, 31 do most = math.max(most, image:pixel(x, y)) end end
+  end
+  assert(most <= 1 and most > 2 ^ -0.02, ("%s: %g"):format(name, most))
+  assert((times > 1) == (name == "matt"), name)
+  for line in io.lines(("two/sphere_%s/light_intensities.txt"):format(name)) do assert(tonumber(line:match "^%S+") == times) end
+end
+os.exit(true)
+E2
+exits 0 "each folder has its exposure" each.lua -q
+mv two all
+for part in 1/3 2/3 3/3; do exits 0 "two objects, part $part" "${two[@]}" --set folder=two --exposure auto -q --shard "$part"; done
+for file in matt/001.png gold/003.png gold/light_intensities.txt matt/light_intensities.txt; do
+    check "the parts' $file" cmp "all/sphere_$file" "two/sphere_$file"
+done
+exits 0 "two objects again" "${two[@]}" --set folder=two --exposure auto
+says "two objects again" '6 kept$'
+exits 0 "one exposure on request" "${two[@]}" --set folder=one --exposure -3 -q
+grep -q '^0.125 0.125 0.125$' one/sphere_matt/light_intensities.txt
+result $? "one exposure for all: $(head -n 1 one/sphere_matt/light_intensities.txt)"
 exits 0 "the other layout" "$root/scripts/photometric.lua" --set lights=2 --size 16x16 -q --exposure -1
 grep -q ',0\.5$' photometric/lights.csv
 result $? "lights.csv: $(cat photometric/lights.csv)"
