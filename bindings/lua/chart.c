@@ -1,6 +1,7 @@
 // The series of glint.chart: tables with label, x, y, color, width and dots; charts as pictures of their own.
 #include "bindings/lua/overlay.h"
 #include "bindings/run/run.h"
+#include "bindings/value/array.h"
 
 #include <string.h>
 
@@ -39,15 +40,15 @@ static const glintL_field FIELDS[] = {
     { .name = NULL },
 };
 
-// Reads the numbers of the list at `index`.
-static void read_numbers(lua_State *L, int index, const char *path, size_t count, double *out)
+// Returns the numbers at `index`: an array, or a list, which an array replaces.
+static const glintL_array *take_numbers(lua_State *L, int index, const char *path, const char *expected)
 {
-    for (size_t i = 0; i < count; i++) {
-        lua_rawgeti(L, index, (lua_Integer)i + 1);
-        const char *full = lua_pushfstring(L, "%s[%d]", path, (int)i + 1);
-        out[i] = glintL_read_number(L, lua_gettop(L) - 1, full);
-        lua_pop(L, 2);
-    }
+    const glintL_array *array = glintL_to_array(L, index);
+    if (array ? array->width != 1 : !lua_istable(L, index))
+        glintL_refuse(L, index, path, expected);
+    if (array)
+        return array;
+    return glintL_take_list(L, index, &(glintL_numbers) { .path = path }, glintL_check_list(L, index, path, false));
 }
 
 // Calls the function at `function` for each x.
@@ -82,25 +83,22 @@ static void push_points(lua_State *L, int index, const char *path, glint_curve *
     const int x = lua_gettop(L), y = x + 1;
     lua_pushliteral(L, "y");
     lua_rawget(L, index);
-    const bool has_x = !lua_isnil(L, x), has_function = lua_isfunction(L, y);
-    if (has_x && !lua_istable(L, x))
-        glintL_refuse(L, x, x_path, "list of numbers");
-    if (!has_function && !lua_istable(L, y))
-        glintL_refuse(L, y, y_path, "list of numbers or function of x");
-    if (has_function && !has_x)
+    const bool has_function = lua_isfunction(L, y);
+    const glintL_array *xs = lua_isnil(L, x) ? NULL : take_numbers(L, x, x_path, "list or array of numbers"), *ys = NULL;
+    if (has_function && !xs)
         glintL_error(L, "%s: list of the numbers at which y is called expected", x_path);
-    const size_t count = has_x ? glintL_check_list(L, x, x_path, false) : glintL_check_list(L, y, y_path, false);
-    if (!has_function && glintL_check_list(L, y, y_path, false) != count)
-        glintL_error(L, "%s: as many numbers as in x expected: %d, got %d", y_path, (int)count, (int)lua_rawlen(L, y));
+    if (!has_function)
+        ys = take_numbers(L, y, y_path, "list or array of numbers, or function of x");
+    const size_t count = xs ? xs->count : ys ? ys->count : 0;
+    if (ys && ys->count != count)
+        glintL_error(L, "%s: as many numbers as in x expected: %d, got %d", y_path, (int)count, (int)ys->count);
     double *points = lua_newuserdatauv(L, (2 * count + 1) * sizeof *points, 0);
-    if (has_x)
-        read_numbers(L, x, x_path, count, points);
-    for (size_t i = 0; i < count && !has_x; i++)
-        points[i] = (double)i + 1;
+    for (size_t i = 0; i < count; i++) {
+        points[i] = xs ? number_at(xs, i) : (double)i + 1;
+        points[count + i] = ys ? number_at(ys, i) : 0;
+    }
     if (has_function)
         call_function(L, y, y_path, count, points, points + count);
-    else
-        read_numbers(L, y, y_path, count, points + count);
     lua_replace(L, x - 2);
     lua_settop(L, x - 2);
     out->x = points;

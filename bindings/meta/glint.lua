@@ -571,8 +571,8 @@ function glint.label(fields) end
 function glint.colorbar(fields) end
 
 ---@class glint.series
----@field y number[]|fun(x: number): number  one number for each x, or a function that is called with each x when the series is read. NaN is a gap
----@field x? number[]  Default: the chart's x; without one 1, 2, 3 ...
+---@field y number[]|glint.array|fun(x: number): number  one number for each x, or a function that is called with each x when the series is read. NaN is a gap
+---@field x? number[]|glint.array  Default: the chart's x; without one 1, 2, 3 ...
 ---@field label? string  text at the end of the curve, in its colour, at most 127 bytes. Default ""
 ---@field color? glint.color  Default: one of eight colours, by the series' number
 ---@field width? number  thickness of the line, points, 0 .. 1000; 0: no line. Default nil: about a seventh of `size`
@@ -581,7 +581,7 @@ function glint.colorbar(fields) end
 ---@class glint.chart_fields: glint.overlay_fields
 ---@field series? glint.series[]  1 .. 16 curves; reads as a copy
 ---@field y? number[]|fun(x: number): number  a single curve, instead of `series`; only in glint.chart { ... }
----@field x? number[]  the x of all series that have none of their own; only in glint.chart { ... }
+---@field x? number[]|glint.array  the x of all series that have none of their own; only in glint.chart { ... }
 ---@field labels? string[]  the labels of the series that have none of their own; only in glint.chart { ... }
 ---@field title? string  text above the curves, as in a label. Default ""
 ---@field x_label? string  name of the horizontal axis, at most 127 bytes. Default ""

@@ -45,8 +45,11 @@ static void take_number(lua_State *L, glintL_array *a, size_t i, const char *pat
     else if (is_whole)
         a->numbers[i] = lua_tonumber(L, -1);
     if (!is_whole) {
-        const char *got = glintL_push_spelling(L, -1);
-        glintL_error(L, "%s[%I]: %s expected, got %s", path, (LUAI_UACINT)row + 1, what, got);
+        const int index = lua_gettop(L);
+        const char *full = lua_pushfstring(L, "%s[%I]", path, (LUAI_UACINT)row + 1);
+        if (!a->is_whole)
+            glintL_read_number(L, index, full); // has a message for numbers with derivatives
+        glintL_refuse(L, index, full, what);
     }
     lua_pop(L, 1);
 }

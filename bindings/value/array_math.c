@@ -96,15 +96,9 @@ int glintL_array_divide(lua_State *L) { return glintL_array_operate(L, LUA_OPDIV
 
 int glintL_array_negate(lua_State *L)
 {
-    const glintL_array *a = glintL_check_array(L);
-    glintL_array *out = glintL_push_array(L, a->count, a->width, a->is_whole);
-    for (size_t i = 0; i < a->count * a->width; i++) {
-        if (a->is_whole)
-            out->wholes[i] = apply_whole(LUA_OPSUB, 0, a->wholes[i]);
-        else
-            out->numbers[i] = -a->numbers[i];
-    }
-    return 1;
+    lua_settop(L, 1); // an operator without a second operand gets the first one twice
+    lua_pushinteger(L, -1);
+    return glintL_array_operate(L, LUA_OPMUL);
 }
 
 int glintL_array_floor(lua_State *L)
@@ -178,22 +172,13 @@ static double sum_of(const glintL_array *a, size_t column)
 static size_t extreme(const glintL_array *a, size_t column, bool largest)
 {
     size_t best = column;
-    if (a->width == 1 && !a->is_whole) {
-        const double *v = a->numbers;
-        double found = v[0];
-        for (size_t i = 1; i < a->count; i++)
-            if (isnan(found) || (largest ? v[i] > found : v[i] < found)) {
-                found = v[i];
-                best = i;
-            }
-        return best;
-    }
     for (size_t i = column + a->width; i < a->count * a->width; i += a->width) {
-        bool is_better = a->is_whole ? a->wholes[i] < a->wholes[best] : a->numbers[i] < a->numbers[best];
-        if (largest)
-            is_better = a->is_whole ? a->wholes[i] > a->wholes[best] : a->numbers[i] > a->numbers[best];
-        if (is_better || (!a->is_whole && isnan(a->numbers[best])))
-            best = i;
+        bool is_better;
+        if (a->is_whole)
+            is_better = largest ? a->wholes[i] > a->wholes[best] : a->wholes[i] < a->wholes[best];
+        else
+            is_better = isnan(a->numbers[best]) || (largest ? a->numbers[i] > a->numbers[best] : a->numbers[i] < a->numbers[best]);
+        best = is_better ? i : best;
     }
     return best;
 }

@@ -37,6 +37,11 @@ function tests.fields()
   check(c.y_range == nil and c.extent == nil and c.at == "center" and c.title == "T", "defaults")
   c.series = { { y = { 4, NAN, 5 } } }
   check(#c.series == 1 and c.series[1].x[3] == 3 and c.series[1].y[2] ~= c.series[1].y[2] and c.y_scale == "log", "x is 1, 2, 3; a gap")
+  c.series = { { x = glint.array({ 1, 2 }, "integer"), y = glint.array { 0.5, NAN } } }
+  check(c.series[1].x[2] == 2 and c.series[1].y[1] == 0.5 and c.series[1].y[2] ~= c.series[1].y[2], "arrays")
+  c.series = { { x = glint.array { 1, 3 }, y = function(x) return 2 * x end } }
+  check(c.series[1].y[2] == 6, "a function of an array")
+  c.series = { { y = { 4, NAN, 5 } } }
   c.x_range, c.extent = nil, { 90, 60 }
   check(c.x_range == nil and c.extent[2] == 60, "nil and back")
   collectgarbage()
@@ -54,7 +59,10 @@ function tests.refused()
   raises("chart.series[1]: 1 .. 1000000 points expected, got 0", chart_of, { y = {} })
   raises("chart.series[1]: at least one point that is not NaN expected", chart_of, { y = { NAN } })
   raises("chart.series[1].y[2]: finite number, or NaN for a gap, expected, got inf", chart_of, { y = { 1, math.huge } })
-  raises("chart.series[1].y[2]", chart_of, { y = { 1, "two" } })
+  raises("chart.series[1].y[2]: number expected, got string \"two\"", chart_of, { y = { 1, "two" } })
+  raises("chart.series[1].y: list or array of numbers, or function of x expected", chart_of, { y = glint.array { { 1, 2 } } })
+  raises("chart.series[1].y: as many numbers as in x expected: 1, got 2", chart_of, { x = { 1 }, y = glint.array { 1, 2 } })
+  raises("chart.series[1].y[1]: this has no derivative", chart_of, { y = { glint.variable("v", 1) } })
   raises("chart.series[1].y(2.0)", chart_of, { x = { 2 }, y = function() end })
   raises("no y today", chart_of, { x = { 2 }, y = function() error "no y today" end })
   raises("did you mean 'label'", chart_of, { y = { 1 }, lable = "a" })
