@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "engine/glint.h"
+#include "engine/glint_data.h"
 
 enum { ROWS = 60000, LINE = 64 };
 
