@@ -340,6 +340,29 @@ for path in "$root"/scripts/*.lua; do
         result $? "$name: $(basename "$open")"
     done
 done
+# So do the examples of the pages, unless they need other files or folders, or are parts of a script.
+mkdir blocks
+for page in $(cd "$root" && ls README.md bindings/README.md bindings/docs/*.md scripts/README.md scripts/particles.md); do
+    (cd "$root" && awk -v to="$work/blocks/${page//\//_}" '
+        /^```lua$/ { name = sprintf("%s_%02d.lua", to, ++blocks); next }
+        /^```/ { if (name) close(name); name = ""; next }
+        name { print > name }' $page)
+done
+compared=0
+for path in blocks/*.lua; do
+    grep -qE 'require *[("]* *"(glint\.|gr)|io\.|file *=|dofile|read_image|output = "[^"]*/' "$path" && continue
+    name=$(basename "$path" .lua)
+    mkdir open closed
+    (cd open && "$glint" "../$path" -f 1 --size 64x36 --quiet -o picture.png) >out 2>open.err || { rm -r open closed; continue; }
+    (cd closed && "$glint" "../$path" -f 1 --size 64x36 --quiet -o picture.png --untrusted=60) >out 2>closed.err
+    result $? "the example $name: ends as without --untrusted: $(cat closed.err)"
+    diff -r open closed >out
+    result $? "the example $name: the same files"
+    compared=$((compared + $(find open -type f | wc -l)))
+    rm -r open closed
+done
+[ $compared -ge 10 ]
+result $? "examples of the pages: $compared files compared"
 printf '%s\n' 'local glint = require "glint"' 'return glint.scene { ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 1 } }' >plain.lua
 "$glint" plain.lua -o open.png --size 16x16 2>open.err && "$glint" plain.lua --untrusted -o closed.png --size 16x16 2>closed.err &&
     cmp open.png closed.png && grep -q "the scene has no camera" closed.err
