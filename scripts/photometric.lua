@@ -32,7 +32,7 @@ local mat = require "glint.mat"
 local png = require "glint.png"
 
 local P = glint.params {
-  lights = { 24, min = 1, max = 999, doc = "directions of light" },
+  lights = { 24, min = 1, max = 999, whole = true, doc = "directions of light" },
   spread = { 65, min = 1, max = 85, doc = "degrees from the camera's axis to the outermost light" },
   shadows = { true, doc = "do objects cast shadows on each other?" },
   specular = { 0, min = 0, max = 1, doc = "strength of a highlight; 0: matt surfaces" },
@@ -42,7 +42,7 @@ local P = glint.params {
   objects = { "balls", doc = "for diligent: balls, sphere, solids, dents, separated by commas" },
   materials = { "matt", doc = "for diligent: matt, glossy, rough, gold, separated by commas" },
   vary = { 0, min = 0, max = 0.9, doc = "for diligent: how much weaker a light may be, in each channel" },
-  size = { 512, min = 8, max = 4096, doc = "pixels per side, unless --size is given" },
+  size = { 512, min = 8, max = 4096, whole = true, doc = "pixels per side, unless --size is given" },
 }
 
 local given = glint._output() -- the value of -o

@@ -10,7 +10,7 @@ local glint = require "glint"
 local particles, helix, bonds = require "glint.particles", require "glint.helix", require "glint.bonds"
 
 local P = glint.params {
-  residues = { 60, min = 1, max = 2000, doc = "residues per helix" },
+  residues = { 60, min = 1, max = 2000, whole = true, doc = "residues per helix" },
   style = { "balls", choices = { "balls", "sticks" }, doc = "balls of full radius, or of a quarter of it with bonds" },
   pdb = { "", doc = "a PDB file to write as well" },
 }

@@ -9,7 +9,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  links = { 11, min = 3, max = 99, doc = "rings of the chain" },
+  links = { 11, min = 3, max = 99, whole = true, doc = "rings of the chain" },
   thickness = { 0.17, min = 0.01, max = 0.3, doc = "radius of a ring's tube, as a fraction of the ring's radius" },
   frames = { 48, min = 1, max = 10000, whole = true, doc = "pictures of the lamp's motion" },
 }

@@ -12,7 +12,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  segments = { 12, min = 4, max = 512, doc = "faces around the equator; half as many from pole to pole" },
+  segments = { 12, min = 4, max = 512, whole = true, doc = "faces around the equator; half as many from pole to pole" },
 }
 
 local clay = glint.material { diffuse = { 0.55, 0.3, 0.18 }, specular = 0.7, shininess = 40 }

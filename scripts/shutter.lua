@@ -10,7 +10,7 @@ local glint = require "glint"
 local P = glint.params {
   frames = { 40, min = 1, max = 10000, whole = true, doc = "frames in one turn of the outer ball" },
   shutter = { 0.8, min = 0, max = 1, doc = "how long the shutter is open, as a share of a frame's time" },
-  times = { 16, min = 1, max = 1024, doc = "times at which the scene is shown while the shutter is open" },
+  times = { 16, min = 1, max = 1024, whole = true, doc = "times shown while the shutter is open" },
   moves = { "all", choices = { "all", "lamp" }, doc = "what moves" },
 }
 

@@ -6,7 +6,7 @@ local glint = require "glint"
 local particles, sphereflake = require "glint.particles", require "glint.sphereflake"
 
 local P = glint.params {
-  size = { 4, min = 0, max = 7, doc = "generations of smaller spheres on the first one" },
+  size = { 4, min = 0, max = 7, whole = true, doc = "generations of smaller spheres on the first one" },
   nff = { "", doc = "an NFF file to write as well" },
 }
 local gold = glint.material { diffuse = { 0.5, 0.45, 0.35 }, specular = 0.5, shininess = 5 }

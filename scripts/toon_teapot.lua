@@ -8,7 +8,7 @@ local models = require "glint.models"
 
 local P = glint.params {
   edge = { 0.01, min = 0, max = 0.5, doc = "how soft the edges of the bands are" },
-  around = { 48, min = 8, max = 256, doc = "faces around the pot" },
+  around = { 48, min = 8, max = 256, whole = true, doc = "faces around the pot" },
 }
 
 local glaze = glint.pattern(function(p)

@@ -3,7 +3,7 @@ local glint = require "glint"
 
 local P = glint.params {
   samples = { 4, min = 1, max = 64, whole = true, doc = "rays per pixel" },
-  light_samples = { 4, min = 1, max = 64, doc = "shadow rays to the lamp, for each ray through a pixel" },
+  light_samples = { 4, min = 1, max = 64, whole = true, doc = "shadow rays to the lamp, for each ray through a pixel" },
   radius = { 1.5, min = 0, max = 4, doc = "radius of the lamp: 0 gives hard shadows" },
 }
 

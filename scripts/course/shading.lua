@@ -2,7 +2,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  segments = { 14, min = 4, max = 96, doc = "faces around the equator" },
+  segments = { 14, min = 4, max = 96, whole = true, doc = "faces around the equator" },
   light = { 20, min = -90, max = 90, doc = "direction of the light, degrees from the viewer" },
   shininess = { 40, min = 1, max = 200, doc = "exponent of the highlight" },
 }
