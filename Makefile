@@ -815,6 +815,8 @@ define INSTALLED
 644 $(BUILD)/libglint.a $(libdir)/libglint.a
 644 $(BUILD)/$(SHARED) $(libdir)/$(SHARED)
 644 $(BUILD)/glint.pc $(libdir)/pkgconfig/glint.pc
+$(foreach file,$(CMAKE_FILES),644 $(BUILD)/$(file) $(libdir)/cmake/glint/$(file)
+)
 $(foreach header,$(HEADERS),644 $(header) $(incdir)/$(notdir $(header))
 )
 644 $(BUILD)/glint.1 $(datadir)/man/man1/glint.1
@@ -840,6 +842,14 @@ $(BUILD)/glint.pc: engine/glint.pc.in FORCE
 	    -e 's|@includedir@|$(incdir:$(PREFIX)/%=$${prefix}/%)|' \
 	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2) $(if $(CAIRO_LIBS),cairo-ft cairo-pdf fontconfig) $(if $(JPEG_LIBS),libjpeg)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
 
+# The same for CMake, whose package lies two folders deeper.
+CMAKE_FILES := glint-config.cmake glint-config-version.cmake
+cmake_prefix = $(if $(filter $(PREFIX)/%,$(libdir)),$${CMAKE_CURRENT_LIST_DIR}/../..$(shell echo '$(libdir:$(PREFIX)/%=/%)' | sed 's|/[^/]*|/..|g'),$(PREFIX))
+$(addprefix $(BUILD)/,$(CMAKE_FILES)): $(BUILD)/%: engine/%.in FORCE
+	@sed -e 's|@cmake_prefix@|$(cmake_prefix)|' -e 's|@cmake_libdir@|$(libdir:$(PREFIX)/%=$${glint_prefix}/%)|' \
+	    -e 's|@cmake_incdir@|$(incdir:$(PREFIX)/%=$${glint_prefix}/%)|' -e 's|@version@|$(VERSION)|' -e 's|@shared@|$(SHARED)|' \
+	    -e 's|@soname@|$(SONAME)|' -e 's|@abi_pattern@|$(subst .,[.],$(ABI))[.]|' $< > $@
+
 $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)
 	@$(BUILD)/glint completion $* > $@
@@ -849,7 +859,7 @@ STRIP ?= strip
 # put MODE FROM TO; uses only options of install(1) that all systems have.
 PUT   := put() { echo "  INSTALL	$$3"; mkdir -p "$$(dirname "$$3")" && install -m "$$1" "$$2" "$$3"; }
 LINKS  = $(SONAME) $(call shared_name,)
-install: all shared pages $(BUILD)/glint.pc $(FILLED) $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
+install: all shared pages $(BUILD)/glint.pc $(addprefix $(BUILD)/,$(CMAKE_FILES)) $(FILLED) $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
 	@$(PUT); printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -n "$$mode" ] || continue; put "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; \
 	    case $$to in *.a) $(STRIP) $(STRIP_DEBUG) "$(DESTDIR)$$to" ;; \

@@ -3,7 +3,8 @@
 /// The order of use: describe (materials, lights, shapes, a camera, a scene), plan (glint_plan_create takes a
 /// snapshot of the scene and lists the stages that a frame needs), render (glint_render runs the plan), write.
 ///
-/// Units     lengths are in world units, angles in radians (`_rad`), colours linear RGB with 1.0 = display white.
+/// Units     lengths are in world units, angles in radians (`_rad`; `_deg`: degrees), colours linear RGB with 1.0 =
+///           display white.
 /// Vectors   `double v[3]` is x, y, z or red, green, blue. The world is right-handed.
 /// Errors    every function that can fail returns a glint_status and fills `error`, which may be NULL. On failure,
 ///           outputs and objects are unchanged. The message starts with the argument's name: "shininess: number >= 0
@@ -150,11 +151,11 @@ void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GL
 // ---- Camera --------------------------------------------------------------------------------------------------------
 
 /// Rays through one point (perspective) or parallel rays (orthographic).
-typedef enum glint_projection { GLINT_PERSPECTIVE, GLINT_ORTHOGRAPHIC } glint_projection;
+typedef enum glint_projection { GLINT_PROJECTION_PERSPECTIVE, GLINT_PROJECTION_ORTHOGRAPHIC } glint_projection;
 
 /// The fields of a camera; lengths in world units.
 typedef struct glint_camera_desc {
-    glint_projection projection; ///< default GLINT_PERSPECTIVE
+    glint_projection projection; ///< default GLINT_PROJECTION_PERSPECTIVE
     double eye[3]; ///< world units, finite; default {0, 0, 10}
     bool has_direction; ///< true: looks along `direction`; false: looks at the point `at`
     /// Finite; `at` differs from `eye`, `direction` is not zero; defaults: the origin, {0, 0, -1}
@@ -455,7 +456,7 @@ glint_transform glint_transform_translate(const double by[3]);
 glint_transform glint_transform_scale(const double by[3]);
 /// Returns a rotation, counter-clockwise when the axis points at the eye. The axis is not zero and need not be unit;
 /// quarter turns are exact.
-glint_transform glint_transform_rotate(const double axis[3], double degrees);
+glint_transform glint_transform_rotate_deg(const double axis[3], double degrees);
 
 /// The points and normals at which the lighting of a mesh is computed. With flat and gouraud, the light on a face is
 /// the same for all viewers: a mirror shows the highlights as the eye sees them directly.
@@ -628,7 +629,7 @@ glint_status glint_sphere_mesh_create(const double center[3], double radius, dou
 
 /// The arithmetic that decides hits, their order and shadows: binary64, or binary32 to show the errors that it
 /// causes.
-typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
+typedef enum glint_precision { GLINT_PRECISION_DOUBLE, GLINT_PRECISION_FLOAT } glint_precision;
 
 /// How visible surfaces are found. The pictures are identical bit by bit, except where rays lie in the plane of a
 /// triangle, so that rounding decides its edges: about one pixel in some thousand pictures taken from such planes.
@@ -698,7 +699,7 @@ typedef enum glint_transfer {
     GLINT_TRANSFER_NONE ///< pixel values are linear, but the file does not say so: viewers take them for sRGB
 } glint_transfer;
 /// The rounding of pixel values to integers.
-typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
+typedef enum glint_rounding { GLINT_ROUNDING_NEAREST, GLINT_ROUNDING_TRUNCATE } glint_rounding;
 
 /// The tone curve, applied to each channel separately. x is the light after exposure, the result is 0 .. 1.
 typedef enum glint_tone_curve {
@@ -740,7 +741,7 @@ typedef struct glint_render_desc {
     /// white. Such a pixel is then as without `adaptive`, and every other pixel as with one sample. With one sample
     /// it has no effect
     double adaptive;
-    glint_precision precision; ///< the precision of hits and shadows; default GLINT_DOUBLE
+    glint_precision precision; ///< the precision of hits and shadows; default GLINT_PRECISION_DOUBLE
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
     double seed; ///< whole number, 0 .. 2^53; each seed gives another, equally good sample pattern; 0: the pattern is
         ///< not shifted
@@ -798,8 +799,8 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
 /// Everything else comes from `scene` as it is now: the plan's effects and stages, and depth, normal, object_id,
 /// albedo, outline and refined. If only lights differ, each such light is replaced by one light per time with its
 /// share of the strength. A derivative of the frame is the mean of the derivatives of the same name at the times; a
-/// time without it counts as 0. Takes ownership of the plans and of the list, which malloc allocated, even on
-/// failure.
+/// time without it counts as 0. The new plan owns the plans and the list, which malloc allocated; on failure the caller
+/// keeps them.
 glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error);
 /// Frees the plan; images rendered from it stay valid. NULL: nothing.

@@ -59,7 +59,7 @@ const char *glint_colormap_name(glint_colormap map);
 const uint32_t *glint_colormap_table(glint_colormap map);
 
 /// The direction of a colour bar: from bottom to top, or from left to right.
-typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orientation;
+typedef enum glint_orientation { GLINT_ORIENTATION_VERTICAL, GLINT_ORIENTATION_HORIZONTAL } glint_orientation;
 
 #define GLINT_CURVES_MAX 16 ///< most curves of a chart
 #define GLINT_CHART_TEXT_SIZE 128 ///< bytes of the label of a curve or the name of an axis, with the ending NUL

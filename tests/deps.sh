@@ -40,6 +40,7 @@ python3-numpy   file:/usr/lib/python3/dist-packages/numpy
 lua-check       command:luacheck
 cppcheck        command:cppcheck
 povray          command:povray
+cmake           command:cmake
 '
 films_optional='
 ffmpeg          command:ffmpeg
@@ -56,6 +57,7 @@ lua5.4          command:lua5.4|lua-5.4|lua54
 bench_optional='
 libembree-dev   header:embree3/rtcore.h
 povray          command:povray
+cmake           command:cmake
 tachyon         command:tachyon
 '
 farm_optional='

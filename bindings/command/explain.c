@@ -10,7 +10,7 @@ static void print_frame(FILE *out, const glintL_run *run, const glint_render_des
 {
     fprintf(out, "%s, frame %" PRId64 ": %.0f x %.0f, %.0f sample%s a pixel, decided in %s precision\n", run->script,
             run->explain_frame, desc->width, desc->height, desc->samples, desc->samples == 1 ? "" : "s",
-            desc->precision == GLINT_FLOAT ? "float" : "double");
+            desc->precision == GLINT_PRECISION_FLOAT ? "float" : "double");
 }
 
 // Prints the stages that each axis of the sweep runs again, and the order of the axes.
@@ -158,7 +158,7 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     fprintf(out,
             ",\"index\":%" PRId64 ",\"width\":%.0f,\"height\":%.0f,\"samples\":%.0f,\"precision\":\"%s\",\"effects\":[",
             run->explain_frame, desc->width, desc->height, desc->samples,
-            desc->precision == GLINT_FLOAT ? "float" : "double");
+            desc->precision == GLINT_PRECISION_FLOAT ? "float" : "double");
     for (size_t i = 0; i < effect_count; i++) {
         fputs(i ? "," : "", out);
         glintL_json(out, "{\"effect\":%s,\"caller\":%s}", effects[i].effect, effects[i].caller);

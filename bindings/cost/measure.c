@@ -104,12 +104,12 @@ static glint_status plan_setting(cost_study *study, const cost_setting *setting,
     glint_status status = count > 0 ? plan_times(study, setting, count, &times, error) : GLINT_OK;
     if (!status)
         status = cost_setting_apply(setting, scene, error);
+    if (!status && times)
+        status = glint_plan_create_exposed(scene->scene, &setting->render.desc, times, (size_t)count, out, error);
+    else if (!status)
+        status = glint_plan_create(scene->scene, &setting->render.desc, out, error);
     if (status)
         drop_times(times, count);
-    else if (times)
-        status = glint_plan_create_exposed(scene->scene, &setting->render.desc, times, (size_t)count, out, error);
-    else
-        status = glint_plan_create(scene->scene, &setting->render.desc, out, error);
     return restore(scene, status, error);
 }
 

@@ -177,7 +177,7 @@ static void find_frustum(const glint_camera_desc *camera, glint_overlay_desc *de
     }
     for (int i = 0; i <= 4; i++)
         add_point(desc, far[i % 4], i ? 0 : GLINT_POINT_BEGINS);
-    for (int i = 0; i <= 4 && camera->projection == GLINT_ORTHOGRAPHIC; i++)
+    for (int i = 0; i <= 4 && camera->projection == GLINT_PROJECTION_ORTHOGRAPHIC; i++)
         add_point(desc, near[i % 4], i ? 0 : GLINT_POINT_BEGINS);
 }
 

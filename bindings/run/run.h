@@ -438,7 +438,7 @@ void glintL_report_black(glintL_run *run);
 /// Plans a frame. `keep_image`: the script will read the linear picture.
 glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
                                 bool keep_image, glintL_work **out, glint_error *error);
-/// Turns the frame into the mean of `count` plans, by glint_shutter_desc, and takes over the plans and their list.
+/// Turns the frame into the mean of `count` plans, by glint_shutter_desc. On success it owns the plans and their list.
 /// `scene` is at the frame's own instant.
 glint_status glintL_work_expose(glintL_work *work, const glint_scene *scene, glint_plan **times, size_t count,
                                 glint_error *error);

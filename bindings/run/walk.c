@@ -286,14 +286,13 @@ static bool expose(glintL_walk *walk, glintL_work *work, int64_t n)
     glint_plan **plans = calloc(count, sizeof *plans);
     if (!plans)
         return glintL_run_fail(walk->run, GLINTL_EXIT_FAILED, work->index, "out of memory");
-    if (!plan_times(walk, work, n, &camera, plans)) {
-        for (size_t k = 0; k < count; k++)
-            glint_plan_destroy(plans[k]);
-        free(plans);
-        return false;
-    }
-    return glintL_work_expose(work, glintL_walk_scene(walk), plans, count, &error) == GLINT_OK ||
-           fail_at(walk, work->index, &error);
+    const bool planned = plan_times(walk, work, n, &camera, plans);
+    if (planned && glintL_work_expose(work, glintL_walk_scene(walk), plans, count, &error) == GLINT_OK)
+        return true;
+    for (size_t k = 0; k < count; k++)
+        glint_plan_destroy(plans[k]);
+    free(plans);
+    return planned && fail_at(walk, work->index, &error);
 }
 
 // Sets the scene to frame n and plans it without a shutter. NULL: the run has failed.

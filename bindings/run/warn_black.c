@@ -41,7 +41,7 @@ static bool cast(const view *v, double sx, double sy, glint_hit *hit)
 {
     const double *window = v->window;
     const double x = window[0] + (sx + 1) / 2 * (window[1] - window[0]), y = window[2] + (sy + 1) / 2 * (window[3] - window[2]);
-    const bool parallel = v->camera->projection != GLINT_PERSPECTIVE;
+    const bool parallel = v->camera->projection != GLINT_PROJECTION_PERSPECTIVE;
     double origin[3], direction[3];
     bool is_hit = false;
     for (int c = 0; c < 3; c++) {

@@ -90,7 +90,7 @@ static bool make_view(const glint_camera_desc *camera, const glint_render_desc *
     memcpy(v->eye, camera->eye, sizeof v->eye);
     if (!glintL_view_axes(camera, v->forward, right, up))
         return false;
-    v->is_perspective = camera->projection == GLINT_PERSPECTIVE;
+    v->is_perspective = camera->projection == GLINT_PROJECTION_PERSPECTIVE;
     glint_camera_window(camera, desc->width, desc->height, window);
     for (int i = 0; i < 4; i++)
         add_plane(v, i, i < 2 ? right : up, i % 2 ? 1 : -1, i % 2 ? -window[i - 1] : window[i + 1]);
@@ -370,7 +370,7 @@ static void look_for_bends(const look *l, const glint_shape *shape, const ball *
     double center[3], radius, segments;
     if (!glint_sphere_mesh_get(shape, center, &radius, &segments))
         return;
-    const double bend = glint_mesh_bend(shape);
+    const double bend = glint_mesh_bend(shape) * (180 / 0x1.921fb54442d18p+1);
     for (int i = 0; i < l->all->light_count; i++)
         shadows = shadows || (glint_light_get(l->all->lights[i])->shadows && !is_dark(glint_light_get(l->all->lights[i])));
     if (!shadows || !(bend > BEND_MOST) || (l->view && is_outside(l->view, b, NULL)))

@@ -158,7 +158,7 @@ static int rotate(lua_State *L)
     }
     if (axis[0] == 0 && axis[1] == 0 && axis[2] == 0)
         glintL_error(L, "rotate.axis: vector that is not zero expected, got {0, 0, 0}");
-    const glint_transform t = glint_transform_rotate(axis, read_finite(L, 2, "rotate.degrees"));
+    const glint_transform t = glint_transform_rotate_deg(axis, read_finite(L, 2, "rotate.degrees"));
     glintL_push_transform(L, &t);
     return 1;
 }

@@ -12,7 +12,7 @@
 
 glint_tone_desc glint_tone_desc_default(void)
 {
-    return (glint_tone_desc) { GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUND_NEAREST, 8, 0 };
+    return (glint_tone_desc) { GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUNDING_NEAREST, 8, 0 };
 }
 
 glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
@@ -23,7 +23,7 @@ glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
     if (desc->transfer > GLINT_TRANSFER_NONE)
         return glint_fail(error, GLINT_ERR_INVALID, "transfer: srgb, linear or none expected, got %d",
                           (int)desc->transfer);
-    if (desc->rounding != GLINT_ROUND_NEAREST && desc->rounding != GLINT_ROUND_TRUNCATE)
+    if (desc->rounding != GLINT_ROUNDING_NEAREST && desc->rounding != GLINT_ROUNDING_TRUNCATE)
         return glint_fail(error, GLINT_ERR_INVALID, "rounding: nearest or truncate expected, got %d",
                           (int)desc->rounding);
     if (desc->bits != 8 && desc->bits != 16)
@@ -67,7 +67,7 @@ static double code_of(const glint_tone_desc *desc, double linear)
     double y = glint_tone_curve_value(desc->curve, linear);
     double x = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_encode(y) : clamp_to_unit(y);
     double code = x * (desc->bits == 16 ? 65535 : 255);
-    return floor(desc->rounding == GLINT_ROUND_NEAREST ? code + 0.5 : code);
+    return floor(desc->rounding == GLINT_ROUNDING_NEAREST ? code + 0.5 : code);
 }
 
 double glint_tone_value(const glint_tone_desc *desc, double linear)
@@ -113,7 +113,7 @@ static float first_by_search(const glint_tone_desc *desc, int k)
 /// 2^-48, but with a tone curve only to 2^-34, since 1 - y of the last codes has 16 bits less.
 static float first_of_code(const glint_tone_desc *desc, int k)
 {
-    double code = desc->rounding == GLINT_ROUND_NEAREST ? k - 0.5 : k;
+    double code = desc->rounding == GLINT_ROUNDING_NEAREST ? k - 0.5 : k;
     double encoded = code / (desc->bits == 16 ? 65535 : 255);
     double y = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded;
     double linear = glint_tone_curve_inverse(desc->curve, y);
@@ -176,7 +176,7 @@ static void make_fit(glint_tone_table *table)
     fit->doubt = 32;
     fit->knee = srgb ? 0.0031308f : INFINITY;
     fit->slope = (float)(srgb ? 255 * 12.92 : 255);
-    fit->base = 256 + (float)fit->doubt * 0x1p-16f + (table->desc.rounding == GLINT_ROUND_NEAREST ? 0.5f : 0);
+    fit->base = 256 + (float)fit->doubt * 0x1p-16f + (table->desc.rounding == GLINT_ROUNDING_NEAREST ? 0.5f : 0);
     fit->offset = fit->base - (float)(255 * 0.055);
 }
 
@@ -288,7 +288,7 @@ glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_to
     if (status)
         return status;
     glint_tone_table **slot = &store[desc->curve][desc->transfer == GLINT_TRANSFER_SRGB]
-                                    [desc->rounding == GLINT_ROUND_NEAREST][desc->bits == 16];
+                                    [desc->rounding == GLINT_ROUNDING_NEAREST][desc->bits == 16];
     pthread_mutex_lock(&store_lock);
     if (!*slot)
         status = glint_tone_table_create(desc, slot, error);

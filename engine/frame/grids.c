@@ -111,7 +111,7 @@ static glint_status find(glint_grids *grids, const glint_tile_frame *frame, cons
     grids->nodes = table->nodes;
     grids->plain = plan->geometry->index->plain;
     keep_used(grids, plan);
-    if (!table->nodes || table->prim_count < FEWEST || plan->desc.precision == GLINT_FLOAT)
+    if (!table->nodes || table->prim_count < FEWEST || plan->desc.precision == GLINT_PRECISION_FLOAT)
         return GLINT_OK;
     const double samples = count_shadowed(frame, extent);
     if (samples < SAMPLES_A_PRIMITIVE * table->prim_count)

@@ -75,7 +75,7 @@ static bool find_parts(const glint_stages *stages, const glint_geometry_table *g
         }
         r->active = (uint16_t)((1u << lanes) - 1);
         r->hits = 0;
-        stages->geometry[GLINT_DOUBLE].cast_rays(&cast);
+        stages->geometry[GLINT_PRECISION_DOUBLE].cast_rays(&cast);
         for (size_t lane = 0; lane < lanes; lane++) {
             const double from = range[0] + (double)(i + lane) * step;
             const bool hidden = (r->hits >> lane & 1) && r->t[lane] * r->scale[lane] < 1 - MARGIN;

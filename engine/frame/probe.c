@@ -42,9 +42,9 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         surface.point[c] = g->point[c];
         surface.normal[c] = g->normal[c];
     }
-    stages->geometry[GLINT_DOUBLE].cast_rays(&cast);
+    stages->geometry[GLINT_PRECISION_DOUBLE].cast_rays(&cast);
     if (g->hits & 1)
-        stages->geometry[GLINT_DOUBLE].surface(&surface);
+        stages->geometry[GLINT_PRECISION_DOUBLE].surface(&surface);
 }
 
 /// Returns the number of a part of a combined solid, from 0. whole: id of the solid. id: id of the part or, if the
@@ -85,7 +85,7 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
 static glint_status choose_stages(const glint_stages **out, glint_error *error)
 {
     const glint_status status = glint_choose_isa(NULL, out, error);
-    if (!status && !((*out)->geometry[GLINT_DOUBLE].bounce && (*out)->geometry[GLINT_DOUBLE].facet))
+    if (!status && !((*out)->geometry[GLINT_PRECISION_DOUBLE].bounce && (*out)->geometry[GLINT_PRECISION_DOUBLE].facet))
         *out = &glint_stages_ref;
     return status;
 }
@@ -199,7 +199,7 @@ static void bounce(tracer *t, double ratio)
         args.reflected[c] = g->reflected[c];
         args.refracted[c] = g->refracted[c];
     }
-    t->stages->geometry[GLINT_DOUBLE].bounce(&args);
+    t->stages->geometry[GLINT_PRECISION_DOUBLE].bounce(&args);
 }
 
 /// Adds a ray from the end of segment `i`, if it carries enough light and there is space.
@@ -324,8 +324,8 @@ static void evaluate_facets(const glint_stages *stages, const glint_light_args *
         facet.normal[c] = view.normal[c] = g->normal[c];
         facet.direction[c] = view.direction[c] = g->direction[c];
     }
-    stages->geometry[GLINT_DOUBLE].view(&view);
-    stages->geometry[GLINT_DOUBLE].facet(&facet);
+    stages->geometry[GLINT_PRECISION_DOUBLE].view(&view);
+    stages->geometry[GLINT_PRECISION_DOUBLE].facet(&facet);
 }
 
 static void evaluate_lane(const glint_stages *stages, const glint_material_desc *desc, const double to_light[3],
@@ -369,7 +369,7 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
         for (int k = 0; k < GLINT_TERM_COUNT; k++)
             shade.sum[k][c] = g->sum[k][c];
     }
-    stages->geometry[GLINT_DOUBLE].light(&light);
+    stages->geometry[GLINT_PRECISION_DOUBLE].light(&light);
     if (material.highlight == GLINT_HIGHLIGHT_FACETS)
         evaluate_facets(stages, &light, g);
     stages->shade(&shade);

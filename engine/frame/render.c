@@ -198,7 +198,7 @@ static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_im
     const glint_image *last = renderer->pictures[0].image;
     return (frame) { .renderer = renderer,
                      .shared = { .plan = plan,
-                                 .stages = glint_stages_for(renderer->stages, plan->desc.precision == GLINT_FLOAT),
+                                 .stages = glint_stages_for(renderer->stages, plan->desc.precision == GLINT_PRECISION_FLOAT),
                                  .image = image,
                                  .last = last && has_format(last, &plan->desc) ? last : NULL,
                                  .tone_table = table,

@@ -16,7 +16,7 @@ typedef struct bar {
     int title_width, title_height;
 } bar;
 
-static bool is_horizontal(const glint_layout *layout) { return layout->desc->orientation == GLINT_HORIZONTAL; }
+static bool is_horizontal(const glint_layout *layout) { return layout->desc->orientation == GLINT_ORIENTATION_HORIZONTAL; }
 
 static void find_marks(const glint_layout *layout, bar *b)
 {

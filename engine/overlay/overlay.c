@@ -92,7 +92,7 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
     glint_status status = GLINT_OK;
     if ((unsigned)desc->map >= GLINT_COLORMAP_COUNT)
         return glint_fail(error, GLINT_ERR_INVALID, "map: no such colour map");
-    if ((unsigned)desc->orientation > GLINT_HORIZONTAL)
+    if ((unsigned)desc->orientation > GLINT_ORIENTATION_HORIZONTAL)
         return glint_fail(error, GLINT_ERR_INVALID, "orientation: vertical or horizontal expected");
     if (!isfinite(desc->low))
         return glint_fail(error, GLINT_ERR_INVALID, "low: finite number expected, got %g", desc->low);

@@ -33,7 +33,7 @@ static void view_axes(const glint_camera_desc *desc, double forward[3], double r
 static void find_pixels(const glint_camera_desc *desc, double width, double height, double half[2], double span[2])
 {
     const double wide = desc->w > 0 ? width / desc->w : 1, high = desc->h > 0 ? height / desc->h : 1;
-    const double half_height = desc->projection == GLINT_ORTHOGRAPHIC ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
+    const double half_height = desc->projection == GLINT_PROJECTION_ORTHOGRAPHIC ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
     half[0] = half[1] = half_height / height;
     if (desc->fx > 0) {
         half[0] = 0.5 / (wide * desc->fx);
@@ -58,7 +58,7 @@ void glint_camera_window(const glint_camera_desc *desc, double width, double hei
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render)
 {
     double right[3], up[3];
-    *out = (glint_plan_camera) { .orthographic = desc->projection == GLINT_ORTHOGRAPHIC,
+    *out = (glint_plan_camera) { .orthographic = desc->projection == GLINT_PROJECTION_ORTHOGRAPHIC,
                                  .pixel_offset = desc->pixel_offset };
     vec_copy(out->eye, desc->eye);
     view_axes(desc, out->forward, right, up);

@@ -347,7 +347,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     one(e, plan->shutter_times, "shutter", "camera: mean of %u times", plan->shutter_times);
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->runs[GLINT_STAGE_REFINE], "samples only where needed", "adaptive = %g", plan->desc.adaptive);
-    one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
+    one(e, plan->desc.precision == GLINT_PRECISION_FLOAT, "float decides hits and shadows", "precision = float");
     static const char *const curves[] = { "clamp", "reinhard", "filmic" };
     const glint_tone_desc *tone = &plan->desc.tone;
     one(e, tone->curve != GLINT_TONE_CLAMP, "tone curve", "tone = %s", curves[tone->curve]);

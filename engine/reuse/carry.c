@@ -242,7 +242,7 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
                             reuse->tile_count > 0 &&
                             reuse->scale == geometry->table.scale && // with another scale, other values underflow
                             reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
-    if (comparable && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
+    if (comparable && plan->desc.precision == GLINT_PRECISION_DOUBLE && !glint_plan_cuts(plan)) {
         if (carry_changes(&c, positions, count))
             reuse->carry_pause = 0;
         else

@@ -51,7 +51,7 @@ static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     reuse->width = (uint32_t)plan->desc.width;
     reuse->height = (uint32_t)plan->desc.height;
     reuse->samples = (uint32_t)plan->desc.samples;
-    reuse->real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
+    reuse->real_size = plan->desc.precision == GLINT_PRECISION_FLOAT ? sizeof(float) : sizeof(double);
     reuse->plain = plan->geometry->index->plain;
     reuse->plane_count = plan->patterns ? plan->patterns->plane_count : 0;
     const size_t bytes = tile_count * (sizeof *reuse->tiles + light_count * sizeof *reuse->tiles->lights);
@@ -74,7 +74,7 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     if (!reuse->on)
         return;
     const uint32_t lights = plan->light_count < GLINT_CACHED_LIGHTS ? plan->light_count : GLINT_CACHED_LIGHTS;
-    const size_t real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
+    const size_t real_size = plan->desc.precision == GLINT_PRECISION_FLOAT ? sizeof(float) : sizeof(double);
     if (reuse->tile_count != tile_count || reuse->width != plan->desc.width || reuse->height != plan->desc.height ||
         reuse->samples != plan->desc.samples || reuse->real_size != real_size || reuse->light_count != lights ||
         reuse->plain != plan->geometry->index->plain ||

@@ -99,7 +99,7 @@ static glint_status check_pixels(const glint_camera_desc *desc, glint_error *err
 {
     if (desc->fy > 0 && !(desc->fx > 0))
         return glint_fail(error, GLINT_ERR_INVALID, "fx: expected pixels > 0, because fy is set, got 0");
-    if (desc->fx > 0 && desc->projection == GLINT_ORTHOGRAPHIC)
+    if (desc->fx > 0 && desc->projection == GLINT_PROJECTION_ORTHOGRAPHIC)
         return glint_fail(error, GLINT_ERR_INVALID, "fx: a perspective camera expected; an orthographic one has a height");
     if ((desc->w > 0) != (desc->h > 0))
         return glint_fail(error, GLINT_ERR_INVALID, "w: w and h expected, got one of them");

@@ -149,6 +149,6 @@ double glint_mesh_bend(const glint_shape *shape)
     for (size_t i = 0; mesh->bend == 0 && i < mesh->triangle_count; i++)
         least = fmin(least, least_cosine(mesh, i));
     if (mesh->bend == 0)
-        mesh->bend = acos(fmin(least, 1)) * (180 / 0x1.921fb54442d18p+1);
+        mesh->bend = acos(fmin(least, 1));
     return mesh->bend;
 }

@@ -56,7 +56,7 @@ static void turn(double degrees, double *sine, double *cosine)
     *cosine = glint_cos(rest * (0x1.921fb54442d18p+1 / 180));
 }
 
-glint_transform glint_transform_rotate(const double axis[3], double degrees)
+glint_transform glint_transform_rotate_deg(const double axis[3], double degrees)
 {
     if (!axis)
         return glint_transform_identity();

@@ -134,7 +134,7 @@ int glint_sheet_axis_width(const glint_sheet_layout *l, const char *name)
 static void measure_bar(glint_sheet_layout *l)
 {
     const double size = SIZE * l->unit, dpi = l->desc->dpi;
-    const bool across = l->desc->colorbar->orientation == GLINT_HORIZONTAL;
+    const bool across = l->desc->colorbar->orientation == GLINT_ORIENTATION_HORIZONTAL;
     l->bar = *l->desc->colorbar;
     l->bar.length = l->bar.has_length ? l->bar.length * (dpi > 0 ? dpi / 72 : 1) : fmin((double)glint_sheet_grid(l, across), BAR_MOST * size);
     l->bar.size = size;

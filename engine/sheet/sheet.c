@@ -107,7 +107,7 @@ static void draw_differences(glint_sheet_layout *l, canvas *paper)
 /// Draws the colour bar in the middle of the grid's right side, or below the grid.
 static void draw_bar(glint_sheet_layout *l)
 {
-    const bool across = l->bar.orientation == GLINT_HORIZONTAL;
+    const bool across = l->bar.orientation == GLINT_ORIENTATION_HORIZONTAL;
     const int space = (int)glint_sheet_grid(l, across) - l->bar_size[across ? 0 : 1], shift = space > 0 ? space / 2 : 0;
     const int beyond = (int)glint_sheet_grid(l, !across) + l->gap;
     glint_colorbar_draw_alone(&l->bar, &l->ink, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift));

@@ -110,9 +110,9 @@ static void give_sample(glint_batch *batch, uint32_t i, uint32_t to)
 /// Moves the rays' numbers in an array of real to their samples.
 static void take_reals(const uint16_t *ray_of, uint32_t count, glint_precision precision, const void *from, void *to)
 {
-    for (uint32_t n = 0; n < count && precision == GLINT_DOUBLE; n++)
+    for (uint32_t n = 0; n < count && precision == GLINT_PRECISION_DOUBLE; n++)
         ((double *)to)[n] = ((const double *)from)[ray_of[n]];
-    for (uint32_t n = 0; n < count && precision == GLINT_FLOAT; n++)
+    for (uint32_t n = 0; n < count && precision == GLINT_PRECISION_FLOAT; n++)
         ((float *)to)[n] = ((const float *)from)[ray_of[n]];
 }
 

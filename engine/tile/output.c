@@ -51,7 +51,7 @@ double glint_tile_direction(const glint_tile *tile, glint_precision precision, i
     const uint32_t lane = i % GLINT_GROUP;
     const double d = glint_real_at(tile->camera.across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
                      glint_real_at(tile->camera.down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
-    return precision == GLINT_FLOAT ? (float)d : d;
+    return precision == GLINT_PRECISION_FLOAT ? (float)d : d;
 }
 
 bool glint_tile_wants_geometry(const glint_plan *plan)
@@ -101,7 +101,7 @@ static void rest_normals(const glint_tile *tile, const glint_tile_frame *frame, 
 static void round_normals(const void *reals, glint_precision precision, uint32_t g, float *restrict out)
 {
     const double *from = (const double *)reals + (size_t)g * GLINT_GROUP;
-    if (precision == GLINT_FLOAT) {
+    if (precision == GLINT_PRECISION_FLOAT) {
         memcpy(out, (const float *)reals + (size_t)g * GLINT_GROUP, GLINT_GROUP * sizeof *out);
         return;
     }

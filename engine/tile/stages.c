@@ -334,7 +334,7 @@ void glint_tile_sample_position(const glint_tile *tile, glint_precision precisio
         point[c] = glint_real_at(tile->surface.point[c], precision, i);
         normal[c] = glint_real_at(tile->surface.normal[c], precision, i);
     }
-    const double slack = precision == GLINT_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
+    const double slack = precision == GLINT_PRECISION_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
     const glint_cone_sample sample = glint_cone_at(light_sample, scale, slack, point, normal, i % GLINT_GROUP);
     vec_copy(out, sample.position);
 }

@@ -484,7 +484,7 @@ static inline uint32_t glint_tile_slot(const glint_tile *tile, uint32_t x, uint3
 /// Reads a number of an array of real.
 static inline double glint_real_at(const void *array, glint_precision precision, uint32_t i)
 {
-    return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
+    return precision == GLINT_PRECISION_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
 }
 /// Returns whether all numbers of a group equal `number`.
 static inline bool glint_all_are(const uint32_t of[GLINT_GROUP], uint32_t number)
@@ -506,14 +506,14 @@ static inline uint32_t glint_count_lanes(uint16_t lanes)
 static inline void glint_reals_of(const void *array, glint_precision precision, uint32_t g, double out[GLINT_GROUP])
 {
     const size_t at = (size_t)g * GLINT_GROUP;
-    if (precision == GLINT_DOUBLE)
+    if (precision == GLINT_PRECISION_DOUBLE)
         memcpy(out, (const double *)array + at, GLINT_GROUP * sizeof *out);
-    for (size_t i = 0; precision == GLINT_FLOAT && i < GLINT_GROUP; i++)
+    for (size_t i = 0; precision == GLINT_PRECISION_FLOAT && i < GLINT_GROUP; i++)
         out[i] = (double)((const float *)array)[at + i];
 }
 static inline void glint_real_put(void *array, glint_precision precision, uint32_t i, double x)
 {
-    if (precision == GLINT_FLOAT)
+    if (precision == GLINT_PRECISION_FLOAT)
         ((float *)array)[i] = (float)x;
     else
         ((double *)array)[i] = x;

@@ -184,7 +184,7 @@ static void set_camera(side_scene *s, const bench_options *options)
     widen(s->plain.at, c.at);
     c.fov_y_rad = (double)s->plain.fov_y_degrees * PI / 180;
     if (s->plain.height > 0) {
-        c.projection = GLINT_ORTHOGRAPHIC;
+        c.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
         c.height = (double)s->plain.height;
     }
     if (options->lens) {
@@ -300,7 +300,7 @@ static glint_render_desc frame_desc(const bench_options *options)
     d.height = BENCH_HEIGHT;
     d.samples = options->samples;
     d.adaptive = options->adaptive ? 0.1 : 0;
-    d.precision = options->is_float ? GLINT_FLOAT : GLINT_DOUBLE;
+    d.precision = options->is_float ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE;
     d.passes = 0;
     d.codes = true;
     return d;

@@ -81,6 +81,23 @@ check "the C example compiles" eval '(compile c_example)'
 check "and runs with the shared library" env -C "$work" LD_LIBRARY_PATH="$prefix/lib" ./c_example
 check "the C example of patterns compiles" eval '(compile c_pattern)'
 check "and runs" env -C "$work" LD_LIBRARY_PATH="$prefix/lib" ./c_pattern
+if command -v cmake >/dev/null; then
+    mkdir -p "$work/by_cmake"
+    cat >"$work/by_cmake/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.13)
+project(by_cmake C)
+find_package(glint ${WANTED} REQUIRED)
+add_executable(c_example ../c_example.c)
+target_link_libraries(c_example glint::glint)
+END
+    by_cmake() { cmake -S "$work/by_cmake" -B "$work/by_cmake/$1" -DCMAKE_PREFIX_PATH="$prefix" -DWANTED="$1"; }
+    version=$("$prefix/bin/glint" --version | sed 's/^glint //; s/ .*//')
+    check "CMake finds it" eval 'by_cmake "$version" && cmake --build "$work/by_cmake/$version"'
+    check "and the program runs" env -C "$work" "$work/by_cmake/$version/c_example"
+    check "no other ABI" eval '! by_cmake 99.0'
+else
+    echo "skip: cmake is not installed"
+fi
 check "the library is named by its ABI" eval 'readelf -d "$work/c_example" | grep -qE "NEEDED.*libglint\.so\.[0-9]+(\.[0-9]+)?\]"'
 check "and nothing of what it needs" eval '! readelf -d "$work/c_example" | grep -qE "NEEDED.*(png|deflate|isal|xxhash)"'
 cat >"$work/kernels.c" <<'END'

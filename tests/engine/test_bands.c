@@ -44,7 +44,7 @@ static glint_image *new_picture(int width, int height, const glint_tone_desc *to
 static glint_image *random_picture(void)
 {
     glint_tone_desc tone = { GLINT_TONE_CLAMP, below(2) ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR,
-                             below(2) ? GLINT_ROUND_NEAREST : GLINT_ROUND_TRUNCATE, below(3) ? 8 : 16, 0 };
+                             below(2) ? GLINT_ROUNDING_NEAREST : GLINT_ROUNDING_TRUNCATE, below(3) ? 8 : 16, 0 };
     int width = below(2) ? 1 + (int)below(100) : 1400 + (int)below(300);
     return new_picture(width, 1 + (int)below(width > 100 ? 150 : 1000), &tone);
 }
@@ -140,7 +140,7 @@ static void test_bands_tone(void **state)
     assert_true(check_same(image, GLINT_ENCODE_FAST, bands) == 1);
     assert_true(check_same(image, GLINT_ENCODE_SMALL, bands) == 0);
     assert_true(check_same(image, GLINT_ENCODE_SMALL, bands) == 1);
-    image->code_tone.rounding = GLINT_ROUND_TRUNCATE;
+    image->code_tone.rounding = GLINT_ROUNDING_TRUNCATE;
     ((uint8_t *)image->codes)[0] ^= 1;
     assert_true(check_same(image, GLINT_ENCODE_SMALL, bands) == 0);
     assert_true(check_same(image, GLINT_ENCODE_FAST, bands) == 0);

@@ -92,7 +92,7 @@ static void test_window(void **state)
     for (int i = 0; i < 4; i++)
         assert_true(fabs(window[i] - want[i]) < 1e-15);
     desc = glint_camera_desc_default();
-    desc.projection = GLINT_ORTHOGRAPHIC;
+    desc.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     desc.height = 3;
     glint_camera_window(&desc, 200, 100, window);
     assert_true(window[0] == -3 && window[1] == 3 && window[2] == -1.5 && window[3] == 1.5);

@@ -100,7 +100,7 @@ static double share_seen(const double light[3], double light_radius, const doubl
         d.shadows = shadows;
         d.radius = shadows ? light_radius : 0;
         assert_int_equal(glint_light_set(lamp, &d, NULL), GLINT_OK);
-        glint_image *image = render(scene, NULL, 1, 1, GLINT_DOUBLE, NULL);
+        glint_image *image = render(scene, NULL, 1, 1, GLINT_PRECISION_DOUBLE, NULL);
         got[shadows] = diffuse_at(image, 0, 0);
         glint_image_release(image);
         glint_scene_release(scene);
@@ -237,7 +237,7 @@ static void truth_by_samples(void **unused)
         assert_int_equal(glint_light_set(light, &d, NULL), GLINT_OK);
         add_ball(scene, (double[3]) { 0.6, 4, 0 }, 0.7, 0);
         add_ball(scene, (double[3]) { -1.6, 3, 0.4 }, 0.5, 0);
-        image[shadow] = render(scene, NULL, 1, SIDE, GLINT_DOUBLE, NULL);
+        image[shadow] = render(scene, NULL, 1, SIDE, GLINT_PRECISION_DOUBLE, NULL);
         glint_scene_release(scene);
     }
     double most = 0, square = 0;
@@ -268,7 +268,7 @@ static void only_where_called_for(void **unused)
     for (int shadow = 0; shadow < 2; shadow++) {
         glint_scene *scene = make_field(shadow ? GLINT_SHADOW_CAPS : GLINT_SHADOW_RAYS, false);
         glint_frame_stats stats;
-        glint_image_release(render(scene, NULL, 1, SIDE, GLINT_DOUBLE, &stats));
+        glint_image_release(render(scene, NULL, 1, SIDE, GLINT_PRECISION_DOUBLE, &stats));
         assert_int_equal(stats.work.overlaps > 0, shadow);
         assert_int_equal(stats.rays.shadow > 0, !shadow);
         assert_int_equal(has_effect(scene, "soft shadow by caps"), shadow);
@@ -297,7 +297,7 @@ static void other_shapes_have_rays(void **unused)
             assert_false(has_effect(scene, "soft shadow by caps"));
             assert_true(has_effect(scene, "soft shadow"));
             assert_int_equal(has_effect(scene, "rays in place of caps"), shadow);
-            image[shadow] = render(scene, NULL, 1, SIDE, GLINT_DOUBLE, NULL);
+            image[shadow] = render(scene, NULL, 1, SIDE, GLINT_PRECISION_DOUBLE, NULL);
             glint_shape_release(shape);
             glint_material_release(material);
             glint_scene_release(scene);
@@ -332,10 +332,10 @@ static void hard_is_of_the_middle(void **unused)
             assert_int_equal(glint_scene_add_light(scene, light, NULL), GLINT_OK);
             glint_light_release(light);
             add_ball(scene, (double[3]) { 0.5, 2, 0.5 }, 1, 0);
-            image[way] = render(scene, NULL, 1, SIDE, GLINT_DOUBLE, &stats);
+            image[way] = render(scene, NULL, 1, SIDE, GLINT_PRECISION_DOUBLE, &stats);
             assert_true(way == 0 || (stats.rays.shadow <= SIDE * SIDE && stats.rays.shadow > SIDE * SIDE / 2));
             for (size_t i = 0; i < INSTRUCTION_SETS; i++) {
-                glint_image *same = render(scene, instruction_sets[i], 2, SIDE, GLINT_DOUBLE, NULL);
+                glint_image *same = render(scene, instruction_sets[i], 2, SIDE, GLINT_PRECISION_DOUBLE, NULL);
                 assert_true(!same || differing(same, image[way]) == 0);
                 glint_image_release(same);
             }

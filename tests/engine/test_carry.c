@@ -112,7 +112,7 @@ static void make_world(world *w)
     view.eye[1] = between(0.5, 9);
     view.eye[2] = 16;
     if (one_in(4)) {
-        view.projection = GLINT_ORTHOGRAPHIC;
+        view.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
         view.height = between(4, 14);
     }
     if (one_in(3))
@@ -257,7 +257,7 @@ static void some_things_move(void **unused)
         render.width = 224;
         render.height = 152;
         render.samples = one_in(3) ? 4 : 1;
-        render.precision = one_in(8) ? GLINT_FLOAT : GLINT_DOUBLE;
+        render.precision = one_in(8) ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE;
         render.codes = true;
         render.passes = one_in(3) ? 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_OBJECT_ID : 0;
         desc.threads = 2;
@@ -267,7 +267,7 @@ static void some_things_move(void **unused)
         }
         for (int i = 0; i < EDITS; i++) {
             glint_frame_stats stats;
-            const bool counts = i > 0 && edit(&w) && render.precision == GLINT_DOUBLE;
+            const bool counts = i > 0 && edit(&w) && render.precision == GLINT_PRECISION_DOUBLE;
             render_both(&w, &render, renderers, &stats);
             frames += counts;
             casts += counts ? share(&stats, "cast") : 0;

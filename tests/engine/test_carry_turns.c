@@ -361,7 +361,7 @@ static void shares_in_another_order(void **unused)
 static void look_from_above(stand *s)
 {
     glint_camera_desc desc = *glint_camera_get(s->camera);
-    desc.projection = GLINT_ORTHOGRAPHIC;
+    desc.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     desc.height = 6;
     assert_int_equal(glint_camera_set(s->camera, &desc, NULL), GLINT_OK);
 }

@@ -30,7 +30,7 @@ static glint_transform random_map(double move)
     random_vector(axis, 1);
     random_vector(by, move);
     const double scale[3] = { between(0.5, 1.6), between(0.5, 1.6), one_in(3) ? -1 : between(0.6, 1.5) };
-    const glint_transform turn = glint_transform_rotate(axis, between(0, 360)), large = glint_transform_scale(scale);
+    const glint_transform turn = glint_transform_rotate_deg(axis, between(0, 360)), large = glint_transform_scale(scale);
     const glint_transform away = glint_transform_translate(by), turned = glint_transform_product(&turn, &large);
     return glint_transform_product(&away, &turned);
 }
@@ -508,7 +508,7 @@ static glint_scene *lit_scene(bool floor, bool many)
     random_vector(c.eye, one_in(4) ? 1 : 7);
     c.fov_y_rad = between(0.4, 1.2);
     if (one_in(4)) {
-        c.projection = GLINT_ORTHOGRAPHIC;
+        c.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
         c.height = 6;
     }
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
@@ -652,9 +652,9 @@ static void many_small_wholes(void **unused)
             dress(whole);
             add(scene, whole);
         }
-        glint_image *want = render(scene, "ref", 1, GLINT_DOUBLE);
+        glint_image *want = render(scene, "ref", 1, GLINT_PRECISION_DOUBLE);
         for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
-            glint_image *got = render(scene, instruction_sets[i], 1, GLINT_DOUBLE);
+            glint_image *got = render(scene, instruction_sets[i], 1, GLINT_PRECISION_DOUBLE);
             if (got && differing(want, got))
                 fail_msg("seed %d, %s: %d pixels", (int)seed, instruction_sets[i], differing(want, got));
             glint_image_release(got);
@@ -728,7 +728,7 @@ static void wholes_of_one_solid(void **unused)
             glint_scene *scene = lit_scene(seed % 2, seed % 3 == 0);
             glint_shape *solid = random_solid(solids[seed % 5]);
             add(scene, i == 0 ? glint_shape_retain(solid) : same_solid(solid, (uint32_t)(seed / 5 % 4)));
-            image[i] = render(scene, NULL, 2, GLINT_DOUBLE);
+            image[i] = render(scene, NULL, 2, GLINT_PRECISION_DOUBLE);
             glint_shape_release(solid);
             glint_scene_release(scene);
         }
@@ -792,7 +792,7 @@ static void boxes_of_triangles(void **unused)
             put_in(whole, made(&ball));
             put_in(whole, made(&cut));
             add(scene, whole);
-            image[i] = render(scene, NULL, 2, GLINT_DOUBLE);
+            image[i] = render(scene, NULL, 2, GLINT_PRECISION_DOUBLE);
             glint_material_release(d.material);
             glint_scene_release(scene);
         }

@@ -363,7 +363,7 @@ static void test_sheet_bar(void **state)
     bar.has_length = true;
     bar.length = 256;
     for (int across = 0; across < 2; across++) {
-        bar.orientation = across ? GLINT_HORIZONTAL : GLINT_VERTICAL;
+        bar.orientation = across ? GLINT_ORIENTATION_HORIZONTAL : GLINT_ORIENTATION_VERTICAL;
         assert_int_equal(glint_sheet_write(&desc, in_folder("sheet.png"), NULL), GLINT_OK);
         const glint_png png = decode_ok(in_folder("sheet.png"));
         const uint8_t *codes = png.codes;

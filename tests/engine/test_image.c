@@ -87,7 +87,7 @@ static void test_tone_every_step(void **state)
     (void)state;
     for (int i = 0; i < 24; i++) {
         glint_tone_desc desc = {(glint_tone_curve)(i / 8), i & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
-                                i & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, i & 4 ? 16 : 8, 0};
+                                i & 2 ? GLINT_ROUNDING_TRUNCATE : GLINT_ROUNDING_NEAREST, i & 4 ? 16 : 8, 0};
         check_every_step(&desc);
     }
 }
@@ -95,7 +95,7 @@ static void test_tone_every_step(void **state)
 static void test_tone_known(void **state) // test cases I1, I2, I3
 {
     (void)state;
-    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUND_NEAREST, 8, 0};
+    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUNDING_NEAREST, 8, 0};
     static const double in[] = {0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, NAN, -1, INFINITY};
     static const int want[] = {0, 1, 2, 128, 255, 255, 0, 0, 255};
     for (int i = 0; i < 9; i++)

@@ -140,7 +140,7 @@ static void check_hits(const ray_case *c)
         along3(origin, -1, met_prim->center, origin);
         for (int j = 0; j < 3; j++)
             k[j] = dot3(solid->inverse[j], origin);
-        if (off_unit(solid->form, solid->tube, k) > (c->precision == GLINT_DOUBLE ? 1e-12 : 1e-4))
+        if (off_unit(solid->form, solid->tube, k) > (c->precision == GLINT_PRECISION_DOUBLE ? 1e-12 : 1e-4))
             fail_msg("seed %llu, ray %u: form %u is hit at {%g, %g, %g}", (unsigned long long)case_seed, i, solid->form,
                      k[0], k[1], k[2]);
     }
@@ -242,7 +242,7 @@ static uint64_t open_lanes, dark_lanes;
 static void place_points(glint_occlude_args *args, const test_scene *scene, int precision, uint32_t *prim,
                          const void *slack)
 {
-    const double share = precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
+    const double share = precision == GLINT_PRECISION_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
     double point[3], ray[3];
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
         const uint32_t on = below(scene->table.prim_count);

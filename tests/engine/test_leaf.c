@@ -116,7 +116,7 @@ static glint_scene *sheets(uint64_t seed, glint_precision precision)
 {
     random_state = seed;
     place at = { pow(2, between(-10, 10)), { 0, 0, 0 } };
-    for (int c = 0; c < 3 && below(2) && precision == GLINT_DOUBLE; c++)
+    for (int c = 0; c < 3 && below(2) && precision == GLINT_PRECISION_DOUBLE; c++)
         at.move[c] = at.scale * between(-1, 1) * pow(10, between(0, 7));
     const double eye[3] = { below(2) ? 0 : between(-2, 2), below(2) ? 0 : between(-2, 2), 8 };
     const double light[3] = { below(3) ? between(-6, 6) : 0, below(3) ? between(-6, 6) : 0,
@@ -126,7 +126,7 @@ static glint_scene *sheets(uint64_t seed, glint_precision precision)
         const double z = between(-3, 3), wide = pow(10, between(-0.7, 0.8)), bumps = below(2) ? 0 : 0.3 * wide / SIDE;
         double corner[3] = { -wide / 2, -wide / 2, z }, across[3] = { wide, 0, 0 }, down[3] = { 0, wide, 0 };
         const double *from = below(2) ? eye : light;
-        switch (precision == GLINT_FLOAT ? 1 + below(4) : below(5)) {
+        switch (precision == GLINT_PRECISION_FLOAT ? 1 + below(4) : below(5)) {
         case 0: // a sheet coplanar with the eye or the light; not in float, where hits in the plane are arbitrary
             for (int c = 0; c < 3; c++)
                 down[c] = (from[c] - corner[c]) * (below(3) ? 0.5 : 1.5);
@@ -166,7 +166,7 @@ static void no_triangle_is_lost(void **unused)
     static const glint_pass passes[] = { GLINT_PASS_OBJECT_ID, GLINT_PASS_DEPTH, GLINT_PASS_BEAUTY };
     (void)unused;
     for (uint64_t seed = 1; seed <= SEEDS; seed += case_step()) {
-        const glint_precision precision = seed % 3 ? GLINT_DOUBLE : GLINT_FLOAT;
+        const glint_precision precision = seed % 3 ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT;
         glint_scene *scene = sheets(seed, precision);
         glint_image *want = render(scene, "ref", precision);
         for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {

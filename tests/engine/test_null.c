@@ -225,7 +225,7 @@ static void test_null_of_every_function(void **state)
         glint_transform_product(NULL, NULL),
         glint_transform_translate(NULL),
         glint_transform_scale(NULL),
-        glint_transform_rotate(NULL, 0),
+        glint_transform_rotate_deg(NULL, 0),
     };
     for (size_t i = 0; i < sizeof made / sizeof *made; i++)
         assert_memory_equal(&made[i], &identity, sizeof identity);

@@ -160,7 +160,7 @@ static void test_colors(void **state)
     for (int horizontal = 0; horizontal < 2; horizontal++) {
         glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
         desc.map = GLINT_COLORMAP_TURBO;
-        desc.orientation = horizontal ? GLINT_HORIZONTAL : GLINT_VERTICAL;
+        desc.orientation = horizontal ? GLINT_ORIENTATION_HORIZONTAL : GLINT_ORIENTATION_VERTICAL;
         desc.has_length = desc.has_size = true;
         desc.length = 512;
         desc.size = 13;
@@ -239,7 +239,7 @@ static void test_box_axes(void **state)
         memcpy(desc.values, values, sizeof values);
         world w = make_world(&desc, 0);
         glint_camera_desc view = glint_camera_desc_default();
-        view.projection = GLINT_ORTHOGRAPHIC;
+        view.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
         view.height = 12; // one unit is 10 pixels
         assert_int_equal(glint_camera_set(glint_scene_get(w.scene)->camera, &view, NULL), GLINT_OK);
         glint_picture *picture = show(&w, "box.png", NULL);
@@ -290,7 +290,7 @@ static void project_box(const glint_overlay_desc *desc, const glint_camera_desc 
     const double right[3] = { -forward[2] / flat, 0, forward[0] / flat };
     const double up[3] = { right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2],
                            right[0] * forward[1] - right[1] * forward[0] };
-    const bool parallel = view->projection == GLINT_ORTHOGRAPHIC;
+    const bool parallel = view->projection == GLINT_PROJECTION_ORTHOGRAPHIC;
     for (int i = 0; i < 8; i++) {
         double x = 0, y = 0, z = 0;
         for (int c = 0; c < 3; c++) {
@@ -317,7 +317,7 @@ static void test_box_outside(void **state)
         glint_camera_desc view = glint_camera_desc_default();
         const double turn = 2.399963 * i, lift = -1.5 + 3.0 * (i + 0.5) / 60, far = 5 + i % 7;
         double at[8][2];
-        view.projection = i % 2 ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
+        view.projection = i % 2 ? GLINT_PROJECTION_ORTHOGRAPHIC : GLINT_PROJECTION_PERSPECTIVE;
         view.eye[0] = far * cos(lift) * sin(turn);
         view.eye[1] = far * sin(lift);
         view.eye[2] = far * cos(lift) * cos(turn);
@@ -469,7 +469,7 @@ static void test_key(void **state)
     changed[11].map = GLINT_COLORMAP_MAGMA;
     changed[12].low = -1;
     changed[13].high = 2;
-    changed[14].orientation = GLINT_HORIZONTAL;
+    changed[14].orientation = GLINT_ORIENTATION_HORIZONTAL;
     changed[15].tick_count = 1, changed[15].ticks[0] = 0.5;
     changed[16] = axes;
     changed[17] = axes, changed[17].names[1][0] = 'b';

@@ -234,7 +234,7 @@ static void random_shape(world *w, glint_material *material)
     const double to[3] = { between(-3, 3), between(0, 2), between(-3, 3) };
     desc.transform = glint_transform_translate(to);
     if (below(2)) {
-        const glint_transform turn = glint_transform_rotate(axis, between(0, 360)), size = glint_transform_scale(by);
+        const glint_transform turn = glint_transform_rotate_deg(axis, between(0, 360)), size = glint_transform_scale(by);
         const glint_transform both = glint_transform_product(&turn, &size);
         desc.transform = glint_transform_product(&desc.transform, &both);
     }
@@ -340,7 +340,7 @@ static world random_world(void)
     OK(glint_scene_set(w.scene, &desc, &error));
     w.render.samples = below(2) ? 1 : below(2) ? 4 : 20;
     w.render.adaptive = below(4) ? 0 : 0.1;
-    w.render.precision = below(4) ? GLINT_DOUBLE : GLINT_FLOAT;
+    w.render.precision = below(4) ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT;
     w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
     return w;
 }
@@ -396,7 +396,7 @@ static void test_bump(void **state)
     glint_program_release(desc.program.bump);
     glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
     const double axis[3] = { 0.2, 1, 0.1 }, by[3] = { 2, 1.5, -0.5 }, to[3] = { 0.3, -0.2, 0.7 };
-    const glint_transform turn = glint_transform_rotate(axis, 40), size = glint_transform_scale(by);
+    const glint_transform turn = glint_transform_rotate_deg(axis, 40), size = glint_transform_scale(by);
     const glint_transform both = glint_transform_product(&turn, &size), move = glint_transform_translate(to);
     floor.transform = glint_transform_product(&move, &both);
     add_shape(&w, &floor, material);
@@ -604,7 +604,7 @@ static void edit(uint32_t turn, wave waves[WAVES], glint_material *material, wor
         v->other = !v->other;
     }
     if (turn % 5 == 4) { // the ball's surface stays the same
-        desc.transform = glint_transform_rotate(axis, 37.0 * turn);
+        desc.transform = glint_transform_rotate_deg(axis, 37.0 * turn);
         OK(glint_shape_set(ball, &desc, &error));
     } else if (turn % 5 == 3) {
         lamp.position[0] += 0.3;

@@ -298,7 +298,7 @@ static glint_image *outline_of(glint_shape *shape, double height)
     glint_camera_desc view = glint_camera_desc_default();
     glint_scene_desc desc = { 0 };
     glint_renderer_desc how = glint_renderer_desc_default();
-    view.projection = GLINT_ORTHOGRAPHIC;
+    view.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     view.height = height;
     view.eye[0] = 3;
     view.eye[1] = 4;

@@ -187,7 +187,7 @@ static const field render_fields[] = {
 static void set_transform(glint_transform *out)
 {
     const double axis[3] = { uniform(-1, 1), uniform(-1, 1), 1 }, by[3] = { uniform(0.5, 1.5), -1, uniform(0.5, 1.5) };
-    const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), scale = glint_transform_scale(by);
+    const glint_transform turn = glint_transform_rotate_deg(axis, uniform(0, 360)), scale = glint_transform_scale(by);
     const uint32_t which = draw(3);
     *out = which == 0 ? glint_transform_identity() : which == 1 ? turn : glint_transform_product(&turn, &scale);
 }

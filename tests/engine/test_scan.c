@@ -119,7 +119,7 @@ static glint_camera *make_camera(double scale, const double offset[3])
         c.eye[k] = offset[k] + scale * (straight ? (k == 2 ? 8 : below(3)) : between(-6, 6));
         c.at[k] = offset[k] + scale * (straight ? (k == 2 ? 0 : (c.eye[k] - offset[k]) / scale) : between(-2, 2));
     }
-    c.projection = below(3) == 0 ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
+    c.projection = below(3) == 0 ? GLINT_PROJECTION_ORTHOGRAPHIC : GLINT_PROJECTION_PERSPECTIVE;
     c.fov_y_rad = below(4) ? between(0.3, 1.8) : between(0.02, 3);
     c.height = scale * (below(2) ? 12 : between(1, 20));
     if (below(3) == 0)
@@ -233,7 +233,7 @@ static int scanned_and_cast(uint64_t first, uint64_t last, bool moved)
         glint_render_desc cast = desc_of(GLINT_VISIBILITY_CAST), raster = desc_of(GLINT_VISIBILITY_SCAN);
         cast.samples = raster.samples = below(3) ? 1 : 3;
         cast.seed = raster.seed = moved && seed % 2 ? (double)seed : 0;
-        cast.precision = raster.precision = below(3) ? GLINT_DOUBLE : GLINT_FLOAT;
+        cast.precision = raster.precision = below(3) ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT;
         glint_image *want = render(scene, &cast, NULL), *got = render(scene, &raster, NULL);
         const int wrong = differing(want, got, &hits);
         if (wrong)
@@ -267,7 +267,7 @@ static void same_on_every_instruction_set(void **unused)
     for (uint64_t seed = 2001; seed <= 2030; seed += case_step()) {
         glint_scene *scene = random_scene(seed);
         glint_render_desc raster = desc_of(GLINT_VISIBILITY_SCAN);
-        raster.precision = seed % 2 ? GLINT_DOUBLE : GLINT_FLOAT;
+        raster.precision = seed % 2 ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT;
         glint_image *want = render(scene, &raster, "ref");
         for (size_t i = FIRST_KERNELS; i < INSTRUCTION_SETS; i++) {
             glint_image *got = render(scene, &raster, instruction_sets[i]);

@@ -339,7 +339,7 @@ static void random_world(world *w)
     w->render.height = 53;
     w->render.samples = one_in(3) ? 3 : 1;
     w->render.adaptive = one_in(6) ? 0.1 : 0;
-    w->render.precision = one_in(4) ? GLINT_FLOAT : GLINT_DOUBLE;
+    w->render.precision = one_in(4) ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE;
     w->render.passes = 1u << GLINT_PASS_BEAUTY | (one_in(3) ? 1u << GLINT_PASS_ALBEDO : 0);
 }
 

@@ -84,7 +84,7 @@ static answer ask(double ratio, double sine, double cosine)
         args.reflected[c] = reflected[c];
         args.refracted[c] = refracted[c];
     }
-    running->geometry[GLINT_DOUBLE].bounce(&args);
+    running->geometry[GLINT_PRECISION_DOUBLE].bounce(&args);
     for (int c = 0; c < 3; c++) {
         out.reflected[c] = reflected[c][0];
         out.refracted[c] = refracted[c][0];

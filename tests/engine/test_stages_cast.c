@@ -168,7 +168,7 @@ static void leaving_case(int precision, bool odd)
     (void)odd;
     ray_case c;
     start_rays(&c, RAYS_FREE, precision);
-    if (precision == GLINT_DOUBLE && one_in(2)) // test_stages_occlude.c covers triangles in float
+    if (precision == GLINT_PRECISION_DOUBLE && one_in(2)) // test_stages_occlude.c covers triangles in float
         mix_scene(&c, true, false);
     const uint32_t n = c.cast.group_count * GLINT_GROUP;
     uint32_t *leaving = input(KIND_U32, n);
@@ -277,7 +277,7 @@ static void afar_case(int precision, bool odd)
 {
     (void)odd;
     static test_scene scene;
-    const uint32_t n = GLINT_TILE_SAMPLES, most_exponent = precision == GLINT_DOUBLE ? 36 : 15;
+    const uint32_t n = GLINT_TILE_SAMPLES, most_exponent = precision == GLINT_PRECISION_DOUBLE ? 36 : 15;
     ray_case c = { .kind = RAYS_FREE, .precision = precision, .plan = { .size = 1 }, .scene = &scene };
     scene.table.prim_count = 1 + below(60);
     for (uint32_t i = 0; i < scene.table.prim_count; i++) {
@@ -565,7 +565,7 @@ static void put_box(const glint_point_box *box)
 }
 
 /// Triangles and solids need real hits and double precision.
-static bool may_mix(int precision, bool odd) { return precision == GLINT_DOUBLE && !odd && one_in(2); }
+static bool may_mix(int precision, bool odd) { return precision == GLINT_PRECISION_DOUBLE && !odd && one_in(2); }
 
 static void surface_case(int precision, bool odd)
 {

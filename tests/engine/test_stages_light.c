@@ -294,7 +294,7 @@ static double log2_error(int precision, uint32_t n, const double *s)
     for (uint32_t i = 0; i < n; i++) {
         float s_f = (float)s[i], x_f = s_f * s_f / (1 + s_f * s_f);
         double x = s[i] * s[i] / (1 + s[i] * s[i]);
-        worst = fmax(worst, ulps(2 * log2_specular[i], log2l(precision == GLINT_DOUBLE ? x : (double)x_f)));
+        worst = fmax(worst, ulps(2 * log2_specular[i], log2l(precision == GLINT_PRECISION_DOUBLE ? x : (double)x_f)));
     }
     end_case();
     return worst;
@@ -311,7 +311,7 @@ static void test_log2_accuracy(void **state)
         FOR_EACH_TESTED
         {
             double worst =
-                fmax(log2_error(GLINT_DOUBLE, GLINT_TILE_SAMPLES, s), log2_error(GLINT_FLOAT, GLINT_TILE_SAMPLES, s));
+                fmax(log2_error(GLINT_PRECISION_DOUBLE, GLINT_TILE_SAMPLES, s), log2_error(GLINT_PRECISION_FLOAT, GLINT_TILE_SAMPLES, s));
             if (!(worst <= MAX_ULP_LOG2))
                 print_message("%s: log2 is %.3f ulp off\n", running->name, worst);
             assert_true(worst <= MAX_ULP_LOG2);

@@ -138,7 +138,7 @@ static void place_points(shadow_case *c, double light_distance)
 /// Places a point on a triangle, and stores the point's rounding error, as surface does.
 static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim)
 {
-    const double slack = c->precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
+    const double slack = c->precision == GLINT_PRECISION_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
     const double u = one_in(6) ? below(2) : between(0, 1), v = (1 - u) * (one_in(6) ? below(2) : between(0, 1));
     double point[3], f = 0, g = 0, far = 0;
     for (int k = 0; k < 3; k++) {
@@ -232,7 +232,7 @@ static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind k
     memset(c, 0, sizeof *c);
     c->precision = precision;
     c->kind = kind;
-    random_place(&c->plan, precision == GLINT_DOUBLE); // avoids points where float overflows
+    random_place(&c->plan, precision == GLINT_PRECISION_DOUBLE); // avoids points where float overflows
     const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
     c->args.sample_count = 1;
     c->args.prim = c->prim = input(KIND_U32, n);
@@ -244,8 +244,8 @@ static void start_shadows(shadow_case *c, int precision, bool odd, shadow_kind k
         c->plan.spread = one_in(4) ? 0.5 : between(2, 4);
     }
     // In float, rounding can produce hits on distant triangles and solids that the BVH would not test.
-    c->plan.triangles = precision == GLINT_DOUBLE && !odd && one_in(2);
-    c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
+    c->plan.triangles = precision == GLINT_PRECISION_DOUBLE && !odd && one_in(2);
+    c->plan.solids = precision == GLINT_PRECISION_DOUBLE && !odd && one_in(3);
     input3(c->args.point, real_kind(precision), n);
     input3(c->args.direction, real_kind(precision), n);
     input3(c->args.normal, real_kind(precision), n);
@@ -535,7 +535,7 @@ static void occlude_grid_case(int precision, bool odd)
 {
     shadow_case c;
     (void)precision;
-    start_shadows(&c, GLINT_DOUBLE, odd, SHADOWS_OF_SMALL);
+    start_shadows(&c, GLINT_PRECISION_DOUBLE, odd, SHADOWS_OF_SMALL);
     occlude_all(&c);
     count_lanes(&c);
     free_scene(c.scene);
@@ -555,7 +555,7 @@ static void occlude_layers_case(int precision, bool odd)
 {
     shadow_case c;
     (void)precision;
-    start_shadows(&c, GLINT_DOUBLE, odd, SHADOWS_IN_LAYERS);
+    start_shadows(&c, GLINT_PRECISION_DOUBLE, odd, SHADOWS_IN_LAYERS);
     occlude_all(&c);
     count_lanes(&c);
     free_scene(c.scene);
@@ -578,10 +578,10 @@ static void test_occlude_found(void **state)
         bool odd;
     } found[] = {
         // a triangle as small as 30 rounding errors: a point that counts as on it is outside the triangle's box
-        { 1021078, GLINT_DOUBLE, false },
+        { 1021078, GLINT_PRECISION_DOUBLE, false },
         // a point with a position that is not finite made its cell forget the extent of the cell's other points
-        { 3012971, GLINT_FLOAT, true },
-        { 3038036, GLINT_DOUBLE, true },
+        { 3012971, GLINT_PRECISION_FLOAT, true },
+        { 3038036, GLINT_PRECISION_DOUBLE, true },
     };
     (void)state;
     mismatches = 0;

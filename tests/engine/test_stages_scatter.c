@@ -80,7 +80,7 @@ static void spread_case(int precision, bool odd)
         put3(ray, precision, i, v);
         put(alpha, precision, i, one_in(4) ? 1e-18 : power_of_ten(-8, 0));
         for (int k = 0; k < 6; k++)
-            put(share[k], GLINT_DOUBLE, i, maybe_odd(odd, one_in(5) ? power_of_ten(148, 152) : between(0, 1)));
+            put(share[k], GLINT_PRECISION_DOUBLE, i, maybe_odd(odd, one_in(5) ? power_of_ten(148, 152) : between(0, 1)));
         put(disk[0], precision, i, radius * cos(angle));
         put(disk[1], precision, i, radius * sin(angle));
     }
@@ -103,7 +103,7 @@ static void spread_case(int precision, bool odd)
         geometry(precision)->spread(&args);
         for (uint32_t i = 0; i < n; i++) // the other lanes may hold anything
             for (int k = 0; k < count && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
-                put(out[k], k < 3 ? precision : GLINT_DOUBLE, i, 0);
+                put(out[k], k < 3 ? precision : GLINT_PRECISION_DOUBLE, i, 0);
         compare_outputs("spread");
     }
 }
@@ -172,7 +172,7 @@ static void direction_of(const double n[3], uint32_t k, uint64_t seed, double ou
         args.normal[c] = normal[c];
         args.direction[c] = direction[c];
     }
-    running->geometry[GLINT_DOUBLE].scatter(&args);
+    running->geometry[GLINT_PRECISION_DOUBLE].scatter(&args);
     for (int c = 0; c < 3; c++)
         out[c] = direction[c][0];
 }

@@ -150,7 +150,7 @@ static glint_scene *new_scene(const double eye[3], const double at[3], double fo
     memcpy(c.at, at, sizeof c.at);
     c.fov_y_rad = fov;
     if (at[2] == PARALLEL) { // looks along z; with 129 pixels across, every eighth ray is at an integer
-        c.projection = GLINT_ORTHOGRAPHIC;
+        c.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
         c.has_direction = true;
         c.direction[2] = -1;
         c.height = 129 / 16.0;
@@ -432,7 +432,7 @@ static void no_acne(void **unused)
         for (int shadows = 0; shadows < 2; shadows++) {
             glint_scene *scene = new_scene(eye, at, 1, light, shadows);
             add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
-            image[shadows] = render(scene, NULL, 1, 129, GLINT_DOUBLE);
+            image[shadows] = render(scene, NULL, 1, 129, GLINT_PRECISION_DOUBLE);
             glint_scene_release(scene);
         }
         if (differing(image[0], image[1]))

@@ -86,7 +86,7 @@ static void print_case(const ray_case *k, const answer *got, const truth *want, 
     else
         printf(want->hit ? "%.17g |" : "miss |", want->t);
     print_found(got->hit, got->at.t, want);
-    bool hit = framed(&k->ray, &k->sphere, GLINT_FLOAT, &t);
+    bool hit = framed(&k->ray, &k->sphere, GLINT_PRECISION_FLOAT, &t);
     print_found(hit, t, want);
     hit = naive_double(&k->ray, &k->sphere, &t);
     print_found(hit, t, want);
@@ -118,7 +118,7 @@ static void check_case(const ray_case *k)
         print_case(k, &got, &want, right);
     // A frame's ray is rounded once more. Its depth is float32, and infinite beyond the range.
     double t;
-    const bool hit = framed(&k->ray, &k->sphere, GLINT_DOUBLE, &t);
+    const bool hit = framed(&k->ray, &k->sphere, GLINT_PRECISION_DOUBLE, &t);
     if (want.tangency > 64 * 0x1p-53 && want.surface > 0)
         hard_check(hit == want.hit && (!hit || fabs(t / want.t - 1) < 1e-6 || t > 1e38), "a frame finds %g, truth %g",
                    hit ? t : 0, want.t);

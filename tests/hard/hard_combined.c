@@ -69,7 +69,7 @@ static glint_transform random_map(void)
     random_direction(axis);
     for (int c = 0; c < 3; c++)
         by[c] = uniform(-3, 3);
-    const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), move = glint_transform_translate(by);
+    const glint_transform turn = glint_transform_rotate_deg(axis, uniform(0, 360)), move = glint_transform_translate(by);
     return glint_transform_product(&move, &turn);
 }
 
@@ -374,7 +374,7 @@ static void lens(void)
             open += x > edges[i];
             all++;
         }
-        hard_values shown = { want, seen_past(edges[i], GLINT_DOUBLE), seen_past(edges[i], GLINT_FLOAT), (double)open / 4096, HARD_BLANK };
+        hard_values shown = { want, seen_past(edges[i], GLINT_PRECISION_DOUBLE), seen_past(edges[i], GLINT_PRECISION_FLOAT), (double)open / 4096, HARD_BLANK };
         const bool right = hard_check(fabs(shown.in_double - want) <= off && fabs(shown.in_float - want) <= off,
                                       "a lens open to %g: %.9g, truth %.9g", edges[i], shown.in_double, want);
         snprintf(what, sizeof what, "a lens past an edge at %g of it, 4,096 samples; books: random ones", edges[i]);

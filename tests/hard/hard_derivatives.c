@@ -258,7 +258,7 @@ static void make_part(glint_shape *whole, glint_shape *shape)
 /// Adds a shape whose description is in world space.
 static glint_shape *add_shape(const world *w, glint_scene *scene, glint_shape_desc desc)
 {
-    const glint_transform turn = glint_transform_rotate((const double[3]) { 0, 0, 1 }, 90),
+    const glint_transform turn = glint_transform_rotate_deg((const double[3]) { 0, 0, 1 }, 90),
                           grow = glint_transform_scale((const double[3]) { 2, 2, 2 });
     const glint_shape_desc together = glint_shape_desc_default(GLINT_SHAPE_UNION);
     glint_shape *shape, *whole;

@@ -186,7 +186,7 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
     put(camera.at, w->at, 3);
     put(&camera.height, w->height, 1);
     camera.fov_y_rad = 0.7;
-    camera.projection = w->orthographic ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
+    camera.projection = w->orthographic ? GLINT_PROJECTION_ORTHOGRAPHIC : GLINT_PROJECTION_PERSPECTIVE;
     scene_camera(scene, &camera);
     glint_scene_desc d = *glint_scene_get(scene);
     put(d.ambient, w->ambient, 3);

@@ -159,7 +159,7 @@ static void set_camera(const world *w, glint_scene *scene)
     put(d.up, w->up, 3);
     put(&d.fov_y_rad, w->fov, 1);
     put(&d.height, w->height, 1);
-    d.projection = w->look == SQUARE || w->look == SQUARE_LENS ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
+    d.projection = w->look == SQUARE || w->look == SQUARE_LENS ? GLINT_PROJECTION_ORTHOGRAPHIC : GLINT_PROJECTION_PERSPECTIVE;
     if (w->look == LENS || w->look == SQUARE_LENS)
         put(&d.aperture, w->aperture, 1);
     if (w->focused == 1)

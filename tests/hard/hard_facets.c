@@ -79,8 +79,8 @@ static double compare(bool beckmann, double roughness, double f0, const double n
                beckmann ? "Beckmann" : "GGX", roughness, got.specular[1], want, off, limit);
     if (shown) {
         shown->truth = want;
-        shown->in_double = point_reflection(material, n, l, v, GLINT_DOUBLE).specular[1];
-        shown->in_float = point_reflection(material, n, l, v, GLINT_FLOAT).specular[1];
+        shown->in_double = point_reflection(material, n, l, v, GLINT_PRECISION_DOUBLE).specular[1];
+        shown->in_float = point_reflection(material, n, l, v, GLINT_PRECISION_FLOAT).specular[1];
         hard_check(fabs(shown->in_double - want) <= limit, "a frame in double: %.10g, truth %.10g", shown->in_double,
                    want);
         hard_check(fabs(shown->in_float - want) <=

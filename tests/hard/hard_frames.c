@@ -122,13 +122,13 @@ static glint_image *render_crowd(const grid_view *view, const hard_sphere *spher
     camera.has_direction = true;
     camera.fov_y_rad = 0x1.921fb54442d18p+0;
     if (view->orthographic) {
-        camera.projection = GLINT_ORTHOGRAPHIC;
+        camera.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
         camera.height = 2 * view->scale;
     }
     scene_camera(scene, &camera);
     for (int i = 0; i < count; i++)
         scene_sphere(scene, &spheres[i], NULL);
-    const frame_desc desc = { SIDE, SIDE, GLINT_DOUBLE, 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_OBJECT_ID, 1, NULL };
+    const frame_desc desc = { SIDE, SIDE, GLINT_PRECISION_DOUBLE, 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_OBJECT_ID, 1, NULL };
     glint_image *image = frame(scene, &desc, NULL);
     glint_scene_release(scene);
     return image;
@@ -200,7 +200,7 @@ static void judge_still(const hard_still *still, tally *sum)
     glint_scene *scene = still_scene(still);
     const frame_desc desc = { STILL_SIDE,
                               STILL_SIDE,
-                              GLINT_DOUBLE,
+                              GLINT_PRECISION_DOUBLE,
                               1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DIFFUSE | 1u << GLINT_PASS_OBJECT_ID,
                               1,
                               NULL };
@@ -300,7 +300,7 @@ static glint_image *render_bare(const bare *b, bool shadows, glint_frame_stats *
     }
     glint_material_release(material);
     scene_light_up(scene, 0, black);
-    const frame_desc desc = { LEAVING_SIDE, LEAVING_SIDE, GLINT_DOUBLE, 1u << GLINT_PASS_DIFFUSE, 1, NULL };
+    const frame_desc desc = { LEAVING_SIDE, LEAVING_SIDE, GLINT_PRECISION_DOUBLE, 1u << GLINT_PASS_DIFFUSE, 1, NULL };
     glint_image *image = frame(scene, &desc, stats);
     glint_scene_release(scene);
     return image;

@@ -208,8 +208,8 @@ static void mirrors(void)
     for (size_t i = 0; i < sizeof depths / sizeof *depths; i++) {
         char what[64];
         const double depth = depths[i];
-        hard_values shown = { oracle_facing_mirrors(0.05, 0.9, depth), facing(0.9, depth, 0.05, GLINT_DOUBLE),
-                              facing(0.9, depth, 0.05, GLINT_FLOAT), HARD_BLANK, HARD_BLANK };
+        hard_values shown = { oracle_facing_mirrors(0.05, 0.9, depth), facing(0.9, depth, 0.05, GLINT_PRECISION_DOUBLE),
+                              facing(0.9, depth, 0.05, GLINT_PRECISION_FLOAT), HARD_BLANK, HARD_BLANK };
         const bool right = hard_check(fabs(shown.in_double - shown.truth) <= LOSS + 0x1p-23, "depth %g: %.9g, not %.9g",
                                       depth, shown.in_double, shown.truth) &
                            hard_check(fabs(shown.in_float - shown.truth) <= LOSS + 0x1p-21, "depth %g: %.9g, not %.9g",
@@ -218,7 +218,7 @@ static void mirrors(void)
         hard_row("M6", what, &shown, right);
     }
     for (double mirror = 0.5; mirror < 1; mirror += 0.07)
-        hard_check(fabs(facing(mirror, 1e6, 0.01, GLINT_DOUBLE) - oracle_facing_mirrors(0.01, mirror, 1e6)) <=
+        hard_check(fabs(facing(mirror, 1e6, 0.01, GLINT_PRECISION_DOUBLE) - oracle_facing_mirrors(0.01, mirror, 1e6)) <=
                        LOSS + 0x1p-22,
                    "mirrors of %g", mirror);
 }
@@ -229,12 +229,12 @@ static void depth(void)
     hard_values shown = { .naive_double = HARD_BLANK, .naive_float = HARD_BLANK };
     const long before = resident_kb();
     shown.truth = oracle_facing_mirrors(1e-6, 1, 1e6);
-    shown.in_double = facing(1, 1e6, 1e-6, GLINT_DOUBLE);
+    shown.in_double = facing(1, 1e6, 1e-6, GLINT_PRECISION_DOUBLE);
     const long memory = resident_kb() - before;
     const bool right =
         hard_check(fabs(shown.in_double - shown.truth) < 1e-6, "%.9g, not %.9g", shown.in_double, shown.truth) &
         hard_check(memory < 64 << 10, "%ld KB more", memory);
-    shown.in_float = facing(1, 1e6, 1e-6, GLINT_FLOAT);
+    shown.in_float = facing(1, 1e6, 1e-6, GLINT_PRECISION_FLOAT);
     hard_row("depth 1e6", "mirrors of 1 that glow 1e-6", &shown, right);
 }
 
@@ -304,7 +304,7 @@ static bool random_prism(double *out, double *through)
     random_direction(axis);
     for (int c = 0; c < 3; c++)
         by[c] = chance(0.5) ? 0 : size * uniform(-100, 100);
-    const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), move = glint_transform_translate(by),
+    const glint_transform turn = glint_transform_rotate_deg(axis, uniform(0, 360)), move = glint_transform_translate(by),
                           map = glint_transform_product(&move, &turn);
     glint_shape_desc rod = glint_shape_desc_default(GLINT_SHAPE_BOX);
     glint_scene *scene = scene_new();
@@ -329,7 +329,7 @@ static bool random_prism(double *out, double *through)
         ray.o[i] = map.m[i][0] * from[0] + map.m[i][1] * from[1] + map.m[i][2] * from[2] + map.m[i][3];
         ray.d[i] = map.m[i][0] * d[0] + map.m[i][1] * d[1] + map.m[i][2] * d[2];
     }
-    *out = point_seen(scene, &ray, GLINT_DOUBLE, reflections + 2, GLINT_PASS_TRANSMISSION);
+    *out = point_seen(scene, &ray, GLINT_PRECISION_DOUBLE, reflections + 2, GLINT_PASS_TRANSMISSION);
     *through *= *through;
     glint_scene_release(scene);
     return true;

@@ -67,7 +67,7 @@ static glint_image *lit(glint_scene *scene, const glint_light_desc *light, bool 
     glint_error error;
     glint_light_desc desc = *light;
     glint_light *lamp;
-    const frame_desc size = { SIDE, SIDE, GLINT_DOUBLE, 1u << GLINT_PASS_DIFFUSE, 1, NULL };
+    const frame_desc size = { SIDE, SIDE, GLINT_PRECISION_DOUBLE, 1u << GLINT_PASS_DIFFUSE, 1, NULL };
     desc.shadows = shadows;
     must(glint_light_create(&desc, &lamp, &error), &error);
     must(glint_scene_add_light(scene, lamp, &error), &error);
@@ -130,7 +130,7 @@ static void sent_on(int kind, bool glass, uint64_t rays)
         const hard_ray ray = solid_aim(&s, size);
         glint_scene *scene = solid_alone(&s, material);
         if (cast(scene, &ray, &hit) && from_outside(&ray, &hit)) {
-            const frame_desc desc = { SIDE, SIDE, GLINT_DOUBLE, 1u << pass | 1u << GLINT_PASS_OBJECT_ID, 1, NULL };
+            const frame_desc desc = { SIDE, SIDE, GLINT_PRECISION_DOUBLE, 1u << pass | 1u << GLINT_PASS_OBJECT_ID, 1, NULL };
             look_along(scene, &ray);
             scene_light_up(scene, 0, white);
             glint_image *image = frame_to_depth(scene, &desc, 1, &stats);

@@ -25,8 +25,8 @@ static double lit(const glint_light_desc *light, const hard_sphere *more, double
 static void compare(const char *id, const char *what, const glint_light_desc *light, hard_values *shown, double off,
                     double off_float)
 {
-    shown->in_double = lit(light, NULL, 0, GLINT_DOUBLE);
-    shown->in_float = lit(light, NULL, 0, GLINT_FLOAT);
+    shown->in_double = lit(light, NULL, 0, GLINT_PRECISION_DOUBLE);
+    shown->in_float = lit(light, NULL, 0, GLINT_PRECISION_FLOAT);
     const bool right = hard_check(fabs(shown->in_double - shown->truth) <= off, "%s in double: %.10g, truth %.10g",
                                   what, shown->in_double, shown->truth) &
                        hard_check(fabs(shown->in_float - shown->truth) <= off_float, "%s in float: %.10g, truth %.10g",
@@ -64,7 +64,7 @@ static void at_the_point(void)
                 glint_scene *scene = scene_new();
                 scene_plane(scene, &floor, NULL);
                 scene_light(scene, &light);
-                const double got = point_seen(scene, &down, p ? GLINT_FLOAT : GLINT_DOUBLE, 5, GLINT_PASS_BEAUTY);
+                const double got = point_seen(scene, &down, p ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE, 5, GLINT_PASS_BEAUTY);
                 glint_scene_release(scene);
                 hard_check(got == 0, "kind %d: %g", kinds[k], got);
             }
@@ -103,7 +103,7 @@ static void far_and_near(void)
             glint_scene *scene = scene_new();
             scene_plane(scene, &floor, NULL);
             scene_light(scene, &light);
-            *got[p] = point_seen(scene, &down, p ? GLINT_FLOAT : GLINT_DOUBLE, 5, GLINT_PASS_BEAUTY);
+            *got[p] = point_seen(scene, &down, p ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE, 5, GLINT_PASS_BEAUTY);
             glint_scene_release(scene);
             // a height below the smallest float is 0 in float, so the light is at the point
             const bool vanished = p && (float)near == 0;
@@ -157,7 +157,7 @@ static void within(void)
                     scene_sphere(scene, &ball, matt);
                     glint_material_release(matt);
                     scene_light(scene, &light);
-                    *got[p] = point_seen(scene, &ray, p ? GLINT_FLOAT : GLINT_DOUBLE, 5, GLINT_PASS_DIFFUSE);
+                    *got[p] = point_seen(scene, &ray, p ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE, 5, GLINT_PASS_DIFFUSE);
                     glint_scene_release(scene);
                     right &= hard_check(*got[p] == list[i].want, "%g, not %g", *got[p], list[i].want);
                 }
@@ -280,7 +280,7 @@ static void sums(int many)
         const hard_ray down = { { 0, 4, 0 }, { 0, -1, 0 } };
         bool right = true;
         for (int p = 0; p < 2; p++) {
-            glint_image *image = frame_of_ray(scene, &down, p ? GLINT_FLOAT : GLINT_DOUBLE, 1u << GLINT_PASS_BEAUTY);
+            glint_image *image = frame_of_ray(scene, &down, p ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE, 1u << GLINT_PASS_BEAUTY);
             float c[3];
             pixel(image, GLINT_PASS_BEAUTY, 0, 0, c);
             glint_image_release(image);

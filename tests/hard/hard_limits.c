@@ -56,7 +56,7 @@ static glint_scene *attenuated(const hard_still *still, double size, int e)
 static void check_scales(int stills)
 {
     hard_test("S36", "scale by powers of two");
-    const glint_precision precisions[] = { GLINT_DOUBLE, GLINT_FLOAT };
+    const glint_precision precisions[] = { GLINT_PRECISION_DOUBLE, GLINT_PRECISION_FLOAT };
     for (int i = 0; i < stills; i++) {
         const hard_still still = still_random(1, 100);
         for (int p = 0; p < 2; p++) {
@@ -91,7 +91,7 @@ static void check_machines(int stills)
         const hard_still still = still_random(1, 100);
         glint_scene *scene = attenuated(&still, still.spheres[0].r, 0);
         for (int p = 0; p < 2; p++) {
-            frame_desc desc = { 129, 67, p ? GLINT_FLOAT : GLINT_DOUBLE, COLOR_PASSES, 1, "ref" };
+            frame_desc desc = { 129, 67, p ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE, COLOR_PASSES, 1, "ref" };
             glint_image *plain = frame(scene, &desc, NULL);
             for (size_t k = 0; k < INSTRUCTION_SETS; k++) {
                 desc.isa = instruction_sets[k];
@@ -179,7 +179,7 @@ static void check_finite(uint64_t scenes)
     for (uint64_t i = 0; i < scenes; i++) {
         glint_scene *scene = extreme_scene();
         const frame_desc desc = {
-            9, 7, chance(0.8) ? GLINT_DOUBLE : GLINT_FLOAT, COLOR_PASSES | 1u << GLINT_PASS_NORMAL, 1, NULL
+            9, 7, chance(0.8) ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT, COLOR_PASSES | 1u << GLINT_PASS_NORMAL, 1, NULL
         };
         glint_frame_stats stats;
         glint_image *image = frame(scene, &desc, &stats);
@@ -197,7 +197,7 @@ static void check_finite(uint64_t scenes)
                 infinite += !isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]);
                 pixel(image, GLINT_PASS_NORMAL, x, y, p);
                 const float length = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-                good = good && (length == 0 || fabsf(length - 1) < (desc.precision == GLINT_FLOAT ? 1e-2f : 1e-6f));
+                good = good && (length == 0 || fabsf(length - 1) < (desc.precision == GLINT_PRECISION_FLOAT ? 1e-2f : 1e-6f));
             }
         hard_check(good, "extreme scene %llu: NaN, a negative colour or a normal that is not unit",
                    (unsigned long long)i);
@@ -219,7 +219,7 @@ static void check_written(void)
     glint_camera_desc camera = glint_camera_desc_default();
     scene_camera(scene, &camera);
     scene_light_up(scene, 0, far_too_bright);
-    const frame_desc desc = { 1, 1, GLINT_DOUBLE, COLOR_PASSES, 1, NULL };
+    const frame_desc desc = { 1, 1, GLINT_PRECISION_DOUBLE, COLOR_PASSES, 1, NULL };
     glint_image *image = frame(scene, &desc, NULL);
     temporary_file(path, ".pfm");
     glint_write_desc write = { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
@@ -292,7 +292,7 @@ static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, c
     const glint_status status = glint_plan_create(scene, &desc, &plan, &error);
     bool right = refused && status && says(&error, name, refused);
     if (!status && !refused) {
-        const frame_desc one_pixel = { 1, 1, GLINT_DOUBLE, desc.passes, 1, NULL };
+        const frame_desc one_pixel = { 1, 1, GLINT_PRECISION_DOUBLE, desc.passes, 1, NULL };
         glint_image *image = frame(scene, &one_pixel, NULL);
         float id[3];
         pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
@@ -379,7 +379,7 @@ static void check_sides(void)
     scene_light_up(scene, 0.5, none);
     const int sides[][2] = { { 65535, 1 }, { 1, 65535 }, { 1, 1 }, { 65535, 2 } };
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
-        const frame_desc desc = { sides[i][0], sides[i][1], GLINT_DOUBLE, 1u << GLINT_PASS_BEAUTY, 1, NULL };
+        const frame_desc desc = { sides[i][0], sides[i][1], GLINT_PRECISION_DOUBLE, 1u << GLINT_PASS_BEAUTY, 1, NULL };
         glint_image *image = frame(scene, &desc, NULL);
         long wrong = 0;
         for (int y = 0; y < sides[i][1]; y++)
@@ -435,7 +435,7 @@ static void check_lights(int count)
         light.shadows = i % 2 == 0;
         scene_light(scene, &light);
     }
-    const frame_desc desc = { 1, 1, GLINT_DOUBLE, COLOR_PASSES, 1, NULL };
+    const frame_desc desc = { 1, 1, GLINT_PRECISION_DOUBLE, COLOR_PASSES, 1, NULL };
     glint_image *image = frame(scene, &desc, NULL);
     float p[3];
     pixel(image, GLINT_PASS_BEAUTY, 0, 0, p);
@@ -492,7 +492,7 @@ static void check_nothing(void)
     scene_light_up(scene, 1, blue);
     scene_light(scene, &light);
     hard_check(!cast(scene, &ray, &hit), "nothing to hit");
-    const frame_desc desc = { 33, 17, GLINT_DOUBLE, COLOR_PASSES | 1u << GLINT_PASS_DEPTH, 2, NULL };
+    const frame_desc desc = { 33, 17, GLINT_PRECISION_DOUBLE, COLOR_PASSES | 1u << GLINT_PASS_DEPTH, 2, NULL };
     glint_image *image = frame(scene, &desc, NULL);
     long wrong = 0;
     for (int y = 0; y < 17; y++)

@@ -74,7 +74,7 @@ static void seams(uint64_t rays)
                 if (i % 50)
                     continue;
                 float id[3];
-                glint_image *image = frame_of_ray(scene, &ray, GLINT_FLOAT, 1u << GLINT_PASS_OBJECT_ID);
+                glint_image *image = frame_of_ray(scene, &ray, GLINT_PRECISION_FLOAT, 1u << GLINT_PASS_OBJECT_ID);
                 pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
                 glint_image_release(image);
                 shown.in_float += id[0] != 1;
@@ -202,7 +202,7 @@ static void in_plane(uint64_t rays)
         shown.naive_float += naive_float((const double(*)[3])corner, &ray);
         if (i % 50 == 0) {
             float id[3];
-            glint_image *image = frame_of_ray(scene, &ray, GLINT_FLOAT, 1u << GLINT_PASS_OBJECT_ID);
+            glint_image *image = frame_of_ray(scene, &ray, GLINT_PRECISION_FLOAT, 1u << GLINT_PASS_OBJECT_ID);
             pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
             glint_image_release(image);
             shown.in_float += !hard_check(id[0] == 0, "float meets a triangle that the ray goes past");
@@ -270,7 +270,7 @@ static void poles(int steps)
             pixel(image, GLINT_PASS_ALBEDO, 0, 0, good);
             glint_image_release(image);
             const bool wrong = !hard_check(good[0] == 1, "step %d: u or v is not within 0 .. 1", i);
-            *(precision == GLINT_DOUBLE ? &shown.in_double : &shown.in_float) += wrong;
+            *(precision == GLINT_PRECISION_DOUBLE ? &shown.in_double : &shown.in_float) += wrong;
         }
         glint_scene_release(scene);
     }

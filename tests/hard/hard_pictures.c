@@ -101,7 +101,7 @@ static void time_both(const hard_still *still, errors *in_float, errors *in_doub
         errors *one = i % 2 ? in_float : in_double;
         const frame_desc desc = { WIDTH * TIMED_SCALE,
                                   HEIGHT * TIMED_SCALE,
-                                  i % 2 ? GLINT_FLOAT : GLINT_DOUBLE,
+                                  i % 2 ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE,
                                   1u << GLINT_PASS_BEAUTY,
                                   1,
                                   NULL };
@@ -220,7 +220,7 @@ static void check_float(int stills)
         do
             still = still_random(log_uniform(1e-3, 1e3), log_uniform(1, 1e3));
         while (span_of(&still) > FLOAT_SPAN || span_of(&still) < 0.1 * FLOAT_SPAN);
-        const errors e = engine_errors(&still, trace_truth(&still), GLINT_FLOAT);
+        const errors e = engine_errors(&still, trace_truth(&still), GLINT_PRECISION_FLOAT);
         wrong += e.wrong;
         pixels += WIDTH * HEIGHT;
     }
@@ -238,7 +238,7 @@ static void compare(const hard_still *still)
     check_truth(still, want);
     const errors textbook_float = textbook_errors(still, want, still_trace_24);
     const errors textbook_double = textbook_errors(still, want, still_trace_53);
-    errors in_float = engine_errors(still, want, GLINT_FLOAT), in_double = engine_errors(still, want, GLINT_DOUBLE);
+    errors in_float = engine_errors(still, want, GLINT_PRECISION_FLOAT), in_double = engine_errors(still, want, GLINT_PRECISION_DOUBLE);
     hard_check(in_double.object == 0, "%ld pixels show a wrong object", in_double.object);
     hard_check(in_double.shadow == 0, "%ld pixels with a wrong shadow", in_double.shadow);
     hard_check(in_double.over1 == 0, "%ld pixels more than a code off, at most %d", in_double.over1, in_double.worst);

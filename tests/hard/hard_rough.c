@@ -90,12 +90,12 @@ static double compare(bool beckmann, double roughness, double cosine)
     const double coarse = oracle_step(beckmann, roughness, n, v, toward, RINGS / 2);
     const double error = sqrt(fmax(most * want - want * want, 0) / (alpha < SHARP ? 1 : RAYS));
     glint_material *material = mirror(beckmann, roughness);
-    for (int precision = GLINT_DOUBLE; precision <= (roughness < 0.1 ? GLINT_DOUBLE : GLINT_FLOAT); precision++) {
+    for (int precision = GLINT_PRECISION_DOUBLE; precision <= (roughness < 0.1 ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT); precision++) {
         const double got = seen(material, n, v, toward, (glint_precision)precision);
         const double off = fabs(got - want), limit = 4 * error + fabs(want - coarse) + 1e-6;
         worst = fmax(worst, off / limit);
         hard_check(off <= limit, "%s, roughness %g, cosine %g, %s: %.6g, truth %.6g, off by %g where %g is allowed",
-                   beckmann ? "Beckmann" : "GGX", roughness, cosine, precision == GLINT_DOUBLE ? "double" : "float", got, want, off, limit);
+                   beckmann ? "Beckmann" : "GGX", roughness, cosine, precision == GLINT_PRECISION_DOUBLE ? "double" : "float", got, want, off, limit);
     }
     glint_material_release(material);
     return worst;

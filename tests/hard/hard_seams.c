@@ -69,7 +69,7 @@ static void check_case(const grazing_case *k)
     must(glint_scene_add_shape(scene, shape, &error), &error);
     scene_light_up(scene, 0, white);
     const double shown =
-        point_seen(scene, &k->ray, GLINT_DOUBLE, 1, k->mirrors ? GLINT_PASS_MIRROR : GLINT_PASS_TRANSMISSION);
+        point_seen(scene, &k->ray, GLINT_PRECISION_DOUBLE, 1, k->mirrors ? GLINT_PASS_MIRROR : GLINT_PASS_TRANSMISSION);
     const bool right = hard_check(shown == k->mirrors, "%s: %g", k->what, shown);
     hard_row("G2", k->what, &(hard_values) { k->mirrors, shown, HARD_BLANK, HARD_BLANK, HARD_BLANK }, right);
     glint_scene_release(scene);
@@ -191,9 +191,9 @@ static void leaving_seams(uint64_t rays)
             double way, slack;
             if (!way_through(scenes[0], &s, size, &ray, &way, &slack))
                 continue;
-            const double shown = point_seen(scenes[0], &aimed, GLINT_DOUBLE, 1, GLINT_PASS_MIRROR);
-            const double leaked = point_seen(scenes[1], &aimed, GLINT_DOUBLE, 1, GLINT_PASS_TRANSMISSION);
-            const double left = point_seen(scenes[2], &aimed, GLINT_DOUBLE, 64, GLINT_PASS_TRANSMISSION);
+            const double shown = point_seen(scenes[0], &aimed, GLINT_PRECISION_DOUBLE, 1, GLINT_PASS_MIRROR);
+            const double leaked = point_seen(scenes[1], &aimed, GLINT_PRECISION_DOUBLE, 1, GLINT_PASS_TRANSMISSION);
+            const double left = point_seen(scenes[2], &aimed, GLINT_PRECISION_DOUBLE, 64, GLINT_PASS_TRANSMISSION);
             wrong[0] += !hard_check(shown == 1, "a mirror shows %g of a white world", shown);
             wrong[1] += !hard_check(leaked == 0, "%g got in and out at one place", leaked);
             wrong[2] += !hard_check(fabs(left - exp(-way / size)) < 1e-6 + slack / size,

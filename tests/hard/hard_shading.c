@@ -203,8 +203,8 @@ static void show(const reflection_case *k, const reflection *want, bool right)
     static const double white[3] = { 1, 1, 1 };
     glint_material *material =
         material_new(k->blinn ? GLINT_MODEL_BLINN_PHONG : GLINT_MODEL_PHONG, white, 1, k->shininess);
-    const hard_values shown = { want->specular, point_reflection(material, k->n, k->l, k->v, GLINT_DOUBLE).specular[1],
-                                point_reflection(material, k->n, k->l, k->v, GLINT_FLOAT).specular[1],
+    const hard_values shown = { want->specular, point_reflection(material, k->n, k->l, k->v, GLINT_PRECISION_DOUBLE).specular[1],
+                                point_reflection(material, k->n, k->l, k->v, GLINT_PRECISION_FLOAT).specular[1],
                                 naive_double(k->blinn, k->shininess, k->n, k->l, k->v),
                                 naive_float(k->blinn, k->shininess, k->n, k->l, k->v) };
     glint_material_release(material);
@@ -275,7 +275,7 @@ static glint_image *row_of(const double *values, int count)
     glint_scene *scene = scene_new();
     scene_light_up(scene, 1, none);
     glint_camera_desc camera = glint_camera_desc_default();
-    camera.projection = GLINT_ORTHOGRAPHIC;
+    camera.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     camera.height = 1;
     scene_camera(scene, &camera);
     for (int i = 0; i < count; i++) {
@@ -289,7 +289,7 @@ static glint_image *row_of(const double *values, int count)
         scene_sphere(scene, &ball, material);
         glint_material_release(material);
     }
-    const frame_desc desc = { count, 1, GLINT_DOUBLE, 1u << GLINT_PASS_BEAUTY, 1, NULL };
+    const frame_desc desc = { count, 1, GLINT_PRECISION_DOUBLE, 1u << GLINT_PASS_BEAUTY, 1, NULL };
     glint_image *image = frame(scene, &desc, NULL);
     glint_scene_release(scene);
     return image;

@@ -96,7 +96,7 @@ static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, c
 {
     static const double corner[2][GLINT_LIGHT_CHUNK] = { { 0 } };
     const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
-    const size_t real = frame->plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
+    const size_t real = frame->plan->desc.precision == GLINT_PRECISION_FLOAT ? sizeof(float) : sizeof(double);
     place_pixels(tile, slots, count, corner, 1, tile->gathered->pixel);
     tile->camera.groups_across = 1;
     tile->camera.group_count = blocks;

@@ -263,7 +263,7 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
                         double off[GLINT_TILE_SAMPLES])
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const double rounding = precision == GLINT_FLOAT ? 0x1p-16 : 0x1p-40;
+    const double rounding = precision == GLINT_PRECISION_FLOAT ? 0x1p-16 : 0x1p-40;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double t = glint_real_at(cut->t, precision, i);
         const double away = fabs(t - glint_real_at(cut->total_t, precision, i));

@@ -35,7 +35,7 @@ static void find_eyes(const glint_tile *tile, const glint_tile_frame *frame, uin
     const size_t at = (size_t)g * GLINT_GROUP;
     _Alignas(64) double buffer[3][GLINT_GROUP];
     glint_eyes_args args = { .direction = buffer[0], .eye = { eye[0] + at, eye[1] + at, eye[2] + at } };
-    if (glint_tile_has_arrays(tile) || frame->plan->desc.precision == GLINT_FLOAT) {
+    if (glint_tile_has_arrays(tile) || frame->plan->desc.precision == GLINT_PRECISION_FLOAT) {
         gather_directions(tile, frame->plan->desc.precision, g, buffer);
     } else {
         args.direction = (const double *)tile->camera.across + (size_t)3 * GLINT_GROUP * (g % tile->groups_across);
@@ -75,7 +75,7 @@ static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint3
     const size_t at = (size_t)g * GLINT_GROUP;
     if (reads_eyes(tile, frame->plan, g))
         find_eyes(tile, frame, g);
-    for (int c = 0; c < 3 && precision == GLINT_FLOAT; c++) {
+    for (int c = 0; c < 3 && precision == GLINT_PRECISION_FLOAT; c++) {
         glint_reals_of(tile->surface.point[c], precision, g, work->point[c] + at);
         glint_reals_of(tile->surface.normal[c], precision, g, work->normal[c] + at);
     }
@@ -84,7 +84,7 @@ static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint3
 void glint_derivative_find_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, glint_derivative_points *out)
 {
     const glint_derivative_work *work = glint_derivative_of(tile);
-    const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
+    const bool is_float = frame->plan->desc.precision == GLINT_PRECISION_FLOAT;
     const size_t at = (size_t)g * GLINT_GROUP;
     for (int c = 0; c < 3; c++) {
         out->point[c] = (is_float ? work->point[c] : tile->surface.point[c]) + at;
@@ -120,7 +120,7 @@ void glint_derivative_take_cone(glint_tile *tile, const glint_tile_frame *frame,
 {
     glint_derivative_work *work = glint_derivative_of(tile);
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
-    const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
+    const bool is_float = frame->plan->desc.precision == GLINT_PRECISION_FLOAT;
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
         const double at[3] = { points->point[0][i], points->point[1][i], points->point[2][i] };
         const double normal[3] = { points->normal[0][i], points->normal[1][i], points->normal[2][i] };
@@ -151,7 +151,7 @@ static void take_field(const glint_tile *tile, const glint_plan *plan, size_t in
 {
     glint_derivative_work *work = glint_derivative_of(tile);
     for (int c = 0; c < glint_field_channels(field); c++) {
-        glint_reals_of(glint_plane_of(tile->at.planes, plan, field, c), GLINT_FLOAT, g, work->planes[which + c]);
+        glint_reals_of(glint_plane_of(tile->at.planes, plan, field, c), GLINT_PRECISION_FLOAT, g, work->planes[which + c]);
         const double *slope = glint_derivative_painted(tile, plan, index, field, c);
         out->value[which + c] = work->planes[which + c];
         out->slope[which + c] = slope ? slope + (size_t)g * GLINT_GROUP : NULL;

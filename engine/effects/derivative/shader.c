@@ -299,7 +299,7 @@ static bool begin(const shading *s, const glint_pattern_points *points)
     for (uint32_t i = 0; i < s->count * GLINT_GROUP; i++)
         s->slopes->share[i] = 1;
     const bool seen =
-        !s->tile->batch && !glint_derives_shading_points(s->tile) && s->frame->plan->desc.precision == GLINT_DOUBLE;
+        !s->tile->batch && !glint_derives_shading_points(s->tile) && s->frame->plan->desc.precision == GLINT_PRECISION_DOUBLE;
     glint_shader_gather(s->tile, s->frame, points, seen ? VIEWS : 0, s->entries, s->count);
     if (seen)
         find_views(s);

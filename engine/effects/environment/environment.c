@@ -61,9 +61,9 @@ bool glint_tile_sees_environment(const glint_tile *tile)
 /// Loads sixteen numbers from an array of real.
 static void load_group(const void *array, glint_precision precision, size_t at, double out[GLINT_GROUP])
 {
-    if (precision == GLINT_DOUBLE)
+    if (precision == GLINT_PRECISION_DOUBLE)
         memcpy(out, (const double *)array + at, GLINT_GROUP * sizeof *out);
-    for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)
+    for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_PRECISION_FLOAT; i++)
         out[i] = (double)((const float *)array)[at + i];
 }
 
@@ -81,7 +81,7 @@ static void load_directions(const glint_tile *tile, glint_precision precision, u
         load_group(tile->camera.down, precision, (3 * y + c) * GLINT_GROUP, down);
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
             d[c][i] += down[i];
-        for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)
+        for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_PRECISION_FLOAT; i++)
             d[c][i] = (double)(float)d[c][i];
     }
 }

@@ -162,7 +162,7 @@ static void gather_points(const gathering *g, unsigned lanes)
 /// them.
 static const glint_camera_args *camera_of(const glint_tile_frame *frame, const glint_pattern_points *points)
 {
-    return points->direction[0] || frame->plan->desc.precision != GLINT_DOUBLE ? NULL : glint_tile_rays_of(points->tile);
+    return points->direction[0] || frame->plan->desc.precision != GLINT_PRECISION_DOUBLE ? NULL : glint_tile_rays_of(points->tile);
 }
 
 /// Loads a component of the directions back along the group's rays, not normalised: see glint_tile_direction.
@@ -279,7 +279,7 @@ void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, d
 /// Returns whether the entries' groups are consecutive in arrays of doubles, so that the arrays can be read directly.
 static bool are_in_order(const glint_tile_frame *frame, const glint_pattern_lanes *entries, uint32_t count)
 {
-    if (frame->plan->desc.precision != GLINT_DOUBLE)
+    if (frame->plan->desc.precision != GLINT_PRECISION_DOUBLE)
         return false;
     for (uint32_t k = 1; k < count; k++)
         if (entries[k].group != entries[0].group + k)

@@ -282,7 +282,7 @@ static picture make_screen(const glint_plan *plan, double scale)
 {
     const glint_plan_camera *camera = &plan->camera;
     picture out = { .camera = camera, .width = plan->desc.width, .height = plan->desc.height, .scale = scale };
-    out.is_float = plan->desc.precision == GLINT_FLOAT;
+    out.is_float = plan->desc.precision == GLINT_PRECISION_FLOAT;
     out.rounding = out.is_float ? 0x1p-24 : 0x1p-53;
     out.per_right = 1 / vec_dot(camera->right, camera->right);
     out.per_up = 1 / vec_dot(camera->up, camera->up);

@@ -251,14 +251,14 @@ glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_ren
     from.times = times;
     if (!status && adds_up(plan, times, count))
         status = glint_plan_make(&from, &all, error);
-    if (all || status) {
+    if (all || status)
         glint_plan_destroy(plan);
+    if (status)
+        return status;
+    if (all)
         free_times(times, count);
-        plan = all;
-    } else {
+    else
         plan->times = times;
-    }
-    if (!status)
-        *out = plan;
-    return status;
+    *out = all ? all : plan;
+    return GLINT_OK;
 }

@@ -203,7 +203,7 @@ static void put_shading_point(glint_tile *tile, const glint_tile_frame *frame, u
                               bool back)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const double rounding = precision == GLINT_FLOAT ? GLINT_POINT_SLACK_FLOAT : GLINT_POINT_SLACK_DOUBLE;
+    const double rounding = precision == GLINT_PRECISION_FLOAT ? GLINT_POINT_SLACK_FLOAT : GLINT_POINT_SLACK_DOUBLE;
     double view[3];
     view_of(&frame->plan->camera, s->point, view);
     for (int c = 0; c < 3; c++) {

@@ -13,7 +13,7 @@
 
 /// The largest distance by which rounding moves a point off a plane, relative to the lengths involved, by the
 /// precision of hits.
-static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 0x1p-18 };
+static const double plane_slack[] = { [GLINT_PRECISION_DOUBLE] = 0x1p-46, [GLINT_PRECISION_FLOAT] = 0x1p-18 };
 
 struct glint_visible_light {
     uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light; first: see glint_tile_sees_light
@@ -203,7 +203,7 @@ static void own_hits(glint_tile *tile, glint_precision precision)
     const size_t count = tile->group_count * GLINT_GROUP;
     if (tile->at.hits == tile->hit.mask)
         return;
-    memcpy(tile->hit.t, tile->at.t, count * (precision == GLINT_FLOAT ? sizeof(float) : sizeof(double)));
+    memcpy(tile->hit.t, tile->at.t, count * (precision == GLINT_PRECISION_FLOAT ? sizeof(float) : sizeof(double)));
     memcpy(tile->hit.prim, tile->at.prim, count * sizeof *tile->hit.prim);
     memcpy(tile->hit.mask, tile->at.hits, tile->group_count * sizeof *tile->hit.mask);
     tile->at.t = tile->hit.t;

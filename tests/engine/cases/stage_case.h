@@ -89,7 +89,7 @@ static inline void free_arrays(test_array *list, uint32_t *list_count)
 
 static inline void *input(array_kind kind, uint32_t count) { return new_array(inputs, &input_count, "", kind, count); }
 
-static inline array_kind real_kind(int precision) { return precision == GLINT_DOUBLE ? KIND_DOUBLE : KIND_FLOAT; }
+static inline array_kind real_kind(int precision) { return precision == GLINT_PRECISION_DOUBLE ? KIND_DOUBLE : KIND_FLOAT; }
 
 static inline void input3(const void *array[3], array_kind kind, uint32_t count)
 {
@@ -99,7 +99,7 @@ static inline void input3(const void *array[3], array_kind kind, uint32_t count)
 
 static inline void put(const void *array, int precision, uint32_t i, double x)
 {
-    if (precision == GLINT_DOUBLE)
+    if (precision == GLINT_PRECISION_DOUBLE)
         ((double *)(uintptr_t)array)[i] = x;
     else
         ((float *)(uintptr_t)array)[i] = (float)x;
@@ -113,7 +113,7 @@ static inline void put3(const void *const array[3], int precision, uint32_t i, c
 
 static inline double get(const void *array, int precision, uint32_t i)
 {
-    return precision == GLINT_DOUBLE ? ((const double *)array)[i] : (double)((const float *)array)[i];
+    return precision == GLINT_PRECISION_DOUBLE ? ((const double *)array)[i] : (double)((const float *)array)[i];
 }
 
 // ---- Every instruction set in turn -------------------------------------------------------------------------------
@@ -173,7 +173,7 @@ static inline bool same_element(const test_array *a, const test_array *b, uint32
 static inline void report_element(const test_array *want, const test_array *got, uint32_t i)
 {
     if (want->kind == KIND_FLOAT || want->kind == KIND_DOUBLE) {
-        int precision = want->kind == KIND_DOUBLE ? GLINT_DOUBLE : GLINT_FLOAT;
+        int precision = want->kind == KIND_DOUBLE ? GLINT_PRECISION_DOUBLE : GLINT_PRECISION_FLOAT;
         printf("%a, wanted %a\n", get(array_elements(got), precision, i), get(array_elements(want), precision, i));
     } else if (want->kind == KIND_U32) {
         printf("%x, wanted %x\n", ((uint32_t *)array_elements(got))[i], ((uint32_t *)array_elements(want))[i]);
@@ -232,7 +232,7 @@ static inline void run_cases(uint32_t cases, uint64_t seed, void (*one)(int prec
     end_case(); // clears what a failed test left behind
     for (uint32_t i = 0; i < cases; i += case_step()) {
         random_state = case_seed = seed + i;
-        one(i & 1 ? GLINT_FLOAT : GLINT_DOUBLE, i % 3 == 2);
+        one(i & 1 ? GLINT_PRECISION_FLOAT : GLINT_PRECISION_DOUBLE, i % 3 == 2);
         end_case();
     }
     assert_int_equal(mismatches, 0);

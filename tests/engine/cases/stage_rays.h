@@ -168,8 +168,8 @@ static inline void get_ray(const ray_case *c, uint32_t i, double origin[3], doub
     for (uint32_t k = 0; k < 3; k++) {
         direction[k] = get(c->camera.across, c->precision, (3 * (group % across) + k) * GLINT_GROUP + lane) +
                        get(c->camera.down, c->precision, (3 * (group / across) + k) * GLINT_GROUP + lane);
-        direction[k] = c->precision == GLINT_FLOAT ? (float)direction[k] : direction[k];
-        origin[k] = c->precision == GLINT_FLOAT ? (float)c->camera.eye[k] : c->camera.eye[k];
+        direction[k] = c->precision == GLINT_PRECISION_FLOAT ? (float)direction[k] : direction[k];
+        origin[k] = c->precision == GLINT_PRECISION_FLOAT ? (float)c->camera.eye[k] : c->camera.eye[k];
     }
 }
 

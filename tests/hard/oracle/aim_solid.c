@@ -18,7 +18,7 @@ static glint_transform random_map(double move)
         next = glint_transform_scale(by);
         map = glint_transform_product(&next, &map);
         random_direction(axis);
-        next = glint_transform_rotate(axis, chance(0.3) ? 90 : uniform(0, 360));
+        next = glint_transform_rotate_deg(axis, chance(0.3) ? 90 : uniform(0, 360));
         map = glint_transform_product(&next, &map);
     }
     for (int c = 0; c < 3; c++)
@@ -49,7 +49,7 @@ static glint_transform undoing_map(const glint_shape_desc *d, double size)
         map.m[1][c] = size / d->radius * (n[(c + 1) % 3] * x[(c + 2) % 3] - n[(c + 2) % 3] * x[(c + 1) % 3]);
         map.m[2][c] = size / length * n[c];
     }
-    const glint_transform turned = glint_transform_rotate(turn, uniform(0, 360));
+    const glint_transform turned = glint_transform_rotate_deg(turn, uniform(0, 360));
     return glint_transform_product(&turned, &map);
 }
 

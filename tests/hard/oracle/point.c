@@ -51,7 +51,7 @@ double point_lit(const glint_light_desc *light, const hard_sphere *more, double 
     const double away = fmax(light->position[1], light->radius);
     memcpy(camera.eye, (double[3]) { x + away, 0.4 * away, 0 }, sizeof camera.eye);
     camera.at[0] = x;
-    camera.projection = GLINT_ORTHOGRAPHIC;
+    camera.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     camera.height = width;
     scene_camera(scene, &camera);
     scene_plane(scene, &floor, matt);
