@@ -18,8 +18,6 @@
 #ifndef GLINT_H
 #define GLINT_H
 
-// clang-format off: it would separate comments from the lines that they explain
-
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -2,8 +2,6 @@
 #ifndef GLINT_FILES_H
 #define GLINT_FILES_H
 
-// clang-format off: it would separate comments from the lines that they explain
-
 #include "glint.h"
 
 #ifdef __cplusplus

@@ -3,8 +3,6 @@
 #ifndef GLINT_INSPECT_H
 #define GLINT_INSPECT_H
 
-// clang-format off: it would separate comments from the lines that they explain
-
 #include "glint.h"
 
 #ifdef __cplusplus

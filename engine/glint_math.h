@@ -3,8 +3,6 @@
 #ifndef GLINT_MATH_H
 #define GLINT_MATH_H
 
-// clang-format off: it would separate comments from the lines that they explain
-
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

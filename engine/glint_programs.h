@@ -2,8 +2,6 @@
 #ifndef GLINT_PROGRAMS_H
 #define GLINT_PROGRAMS_H
 
-// clang-format off: it would separate comments from the lines that they explain
-
 #include "glint.h"
 #include "glint_math.h"
 

@@ -16,7 +16,6 @@ static const char *const FORMATS[] = { "f32", "f64", NULL };
 
 #define AT(member) offsetof(arguments, member)
 
-// clang-format off
 #define EVERY_MESH \
     {.name = "shading", .type = GLINT_TYPE_CHOICE, .offset = AT(desc.shading), .set_offset = AT(desc.has_shading), \
      .names = SHADINGS}, \
@@ -24,7 +23,6 @@ static const char *const FORMATS[] = { "f32", "f64", NULL };
     {.name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(desc.transform)}, \
     {.name = "two_sided", .type = GLINT_TYPE_FLAG, .offset = AT(desc.two_sided)}, \
     {.name = "name", .type = GLINT_TYPE_TEXT, .offset = AT(desc.name)}
-// clang-format on
 
 static const glintL_field FIELDS[] = {
     { .name = "file", .type = GLINT_TYPE_OTHER },

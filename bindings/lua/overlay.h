@@ -34,7 +34,6 @@ void glintL_overlay_push_position(lua_State *L, const void *desc);
 void glintL_overlay_read_text(lua_State *L, int index, const char *path, void *desc);
 void glintL_overlay_push_text(lua_State *L, const void *desc);
 
-// clang-format off
 #define EVERY_OVERLAY \
     {.name = "at", GLINTL_CUSTOM(glintL_overlay_read_at, glintL_overlay_push_at)}, \
     {.name = "position", GLINTL_CUSTOM(glintL_overlay_read_position, glintL_overlay_push_position), .set_offset = AT(has_position)}, \
@@ -56,7 +55,6 @@ void glintL_overlay_push_text(lua_State *L, const void *desc);
 #define HIDES {.name = "hidden", .type = GLINT_TYPE_CHOICE, .offset = AT(hidden), .names = glintL_overlay_hidden}
 
 #define LENGTH {.name = "length", .type = GLINT_TYPE_NUMBER, .offset = AT(length), .set_offset = AT(has_length)}
-// clang-format on
 
 extern const glintL_field glintL_colorbar_fields[], glintL_axes_fields[], glintL_polyline_fields[], glintL_lobe_fields[],
     glintL_path_fields[], glintL_frustum_fields[], glintL_chart_fields[];

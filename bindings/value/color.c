@@ -12,7 +12,6 @@ typedef struct named {
 } named;
 
 // The named colours of CSS Color Module Level 4, section 6.1, in the order of strcmp.
-// clang-format off
 static const named NAMES[] = {
     {"aliceblue", 0xf0f8ff}, {"antiquewhite", 0xfaebd7}, {"aqua", 0x00ffff}, {"aquamarine", 0x7fffd4},
     {"azure", 0xf0ffff}, {"beige", 0xf5f5dc}, {"bisque", 0xffe4c4}, {"black", 0x000000}, {"blanchedalmond", 0xffebcd},
@@ -51,7 +50,6 @@ static const named NAMES[] = {
     {"tomato", 0xff6347}, {"turquoise", 0x40e0d0}, {"violet", 0xee82ee}, {"wheat", 0xf5deb3}, {"white", 0xffffff},
     {"whitesmoke", 0xf5f5f5}, {"yellow", 0xffff00}, {"yellowgreen", 0x9acd32},
 };
-// clang-format on
 
 #define NAME_COUNT (sizeof NAMES / sizeof *NAMES)
 #define LONGEST_NAME 20 // lightgoldenrodyellow

@@ -20,7 +20,6 @@ static const char *const projections[] = { "perspective", "orthographic", NULL }
 #define ANY .low = -DBL_MAX, .high = DBL_MAX, .expected = "finite number"
 #define PIXELS .high = DBL_MAX, .expected = "pixels > 0"
 
-// clang-format off
 const glint_object_field glint_camera_fields[] = {
     { GLINT_ROW(eye, VECTOR), .initial = { 0, 0, 10 }, SLOPES, .doc = "world units. No default: required without `matrix`" },
     { GLINT_ROW(at, VECTOR), .unset_offset = offsetof(DESC, has_direction), SLOPES,
@@ -68,7 +67,6 @@ const glint_object_field glint_camera_fields[] = {
     { GLINT_ROW(name, TEXT), .doc = "for messages, at most 63 bytes" },
     { .name = NULL },
 };
-// clang-format on
 _Static_assert(offsetof(DESC, has_focus_point) == offsetof(DESC, focus) + sizeof(double), "GLINT_TYPE_DISTANCE");
 
 glint_camera_desc glint_camera_desc_default(void)

@@ -24,7 +24,6 @@ static const char *const shadows[] = { "rays", "hard", "caps", NULL };
 #define POSITION(text) { GLINT_ROW(position, VECTOR), .required = true, SLOPES, .unit = "world units", .doc = text }
 #define RADIUS(text) { GLINT_ROW(radius, NUMBER), .required = true, GLINT_AT_LEAST_0, .initial = { 1 }, .unit = "world units", .doc = text }
 
-// clang-format off
 #define EVERY_LIGHT(slopes_of_distance) \
     { GLINT_ROW(color, COLOR), .initial = { 1, 1, 1 }, SLOPES, .doc = "the light's colour, >= 0" }, \
     { GLINT_ROW(intensity, NUMBER), GLINT_AT_LEAST_0, .initial = { 1 }, SLOPES, .doc = ">= 0, multiplies each of the three terms" }, \
@@ -111,7 +110,6 @@ static const glint_object_field sphere_fields[] = {
     RADIUS(">= 0; 0 is a point light, bit for bit"),
     { .name = NULL },
 };
-// clang-format on
 
 const glint_object_field *const glint_light_fields[] = {
     [GLINT_LIGHT_POINT] = point_fields, [GLINT_LIGHT_DIRECTIONAL] = directional_fields, [GLINT_LIGHT_SPOT] = spot_fields,

@@ -22,7 +22,6 @@ static const char *const distributions[] = { "ggx", "beckmann", NULL };
 #define COLORS (GLINT_TAKES_PATTERN | GLINT_TAKES_TEXTURE | GLINT_TAKES_VARIABLE)
 #define NUMBERS (GLINT_TAKES_PATTERN | GLINT_TAKES_VARIABLE)
 
-// clang-format off
 const glint_object_field glint_material_fields[] = {
     { GLINT_ROW(model, CHOICE), .names = models, PROGRAM(shader), .takes = GLINT_TAKES_SHADER,
       .doc = "model of the highlight; \"lambert\" has none; \"cook_torrance\" uses microfacets" },
@@ -71,7 +70,6 @@ const glint_object_field glint_material_fields[] = {
     { GLINT_ROW(name, TEXT), .doc = "used in messages and `glint explain`, at most 63 bytes" },
     { .name = NULL },
 };
-// clang-format on
 
 glint_material_desc glint_material_desc_default(void)
 {

@@ -16,7 +16,6 @@ static const char *const cameras[] = { "glint.camera", NULL };
 
 #define GIVEN(field) .set_offset = offsetof(DESC, field)
 
-// clang-format off
 static const glint_object_field depth_cue_parts[] = {
     { GLINT_NAMED("color", depth_cue_color, COLOR), GIVEN(has_depth_cue_color), .follows = "background" },
     { GLINT_NAMED("near", depth_cue_near, NUMBER), .low = 0, .high = DBL_MAX, .expected = "finite number >= 0" },
@@ -58,7 +57,6 @@ const glint_object_field glint_scene_fields[] = {
              "rough surfaces show lamps only" },
     { .name = NULL },
 };
-// clang-format on
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error)
 {

@@ -30,7 +30,6 @@ static const char *const shadings[] = { "faceted", "phong", "flat", "gouraud", N
     { GLINT_ROW(transform, TRANSFORM), .doc = "maps the described shape to its place in the world; nil: no change" }, \
     { GLINT_ROW(name, TEXT), .doc = doc_of_name }
 
-// clang-format off
 #define EVERY_SHAPE \
     { GLINT_ROW(material, OBJECT), .names = material_kind, \
       .doc = "Default: a new material with default fields; for a part of a combined solid, the material of the solid" }, \
@@ -97,7 +96,6 @@ static const glint_object_field mesh_fields[] = {
 static const glint_object_field group_fields[] = { PLACED("at most 63 bytes"), { .name = NULL } };
 
 static const glint_object_field other_fields[] = { EVERY_SHAPE };
-// clang-format on
 
 const glint_object_field *const glint_shape_fields[] = {
     [GLINT_SHAPE_SPHERE] = sphere_fields,      [GLINT_SHAPE_PLANE] = plane_fields,

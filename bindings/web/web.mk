@@ -1,0 +1,109 @@
+# make web, site and check-web; included by the Makefile.
+
+# Debian's Emscripten needs the path of its loader's modules.
+EM          := env NODE_PATH=/usr/share/nodejs
+WEB_OBJECTS := build-web
+WEB_MAKE    := PKG_CONFIG_LIBDIR=$(CURDIR)/$(WEB_OBJECTS)/libraries/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(WEB_OBJECTS) \
+                 PORTABLE=1 CC="$(EM) emcc" AR="$(EM) emar" CFLAGS=-O2 CPPFLAGS=-msimd128 KERNEL_CFLAGS="-O3 -fno-slp-vectorize"
+# Memory grows up to the browser's limit for a page. The stack is large enough for a pool thread and for Lua.
+WEB_LINK    := -Oz -msimd128 --no-entry -sMODULARIZE=1 -sEXPORT_NAME=createGlint -sENVIRONMENT=worker -sALLOW_MEMORY_GROWTH=1 \
+                 -sMAXIMUM_MEMORY=2GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=2MB -sFORCE_FILESYSTEM=1 \
+                 -sEXPORTED_FUNCTIONS=_malloc,_free -sEXPORTED_RUNTIME_METHODS=FS,UTF8ToString,stringToUTF8,lengthBytesUTF8
+
+.PHONY: web web-module web-files web-pages site check-web
+web: web-module ## build/web: the module glint-render, live figures, playground and course; installs what it needs through apt and npm
+	+@$(MAKE) --no-print-directory web-pages
+
+web-module:
+	@tests/deps.sh build web
+	@tests/machines/libraries.sh $(WEB_OBJECTS)/libraries "$(EM) emcc" "$(EM) emar"
+	+@$(WEB_MAKE) WEB=$(BUILD)/web web-files
+
+WEB ?= $(BUILD)/web
+web-files: $(WEB)/glint.wasm $(BUILD)/worker.mjs
+
+ifneq ($(WASM),)
+$(BUILD)/glint.js: $(BINDINGS_OBJ) $(BUILD)/libglint.a
+	$(call say,LINK)
+	$(Q)$(CC) $(WEB_LINK) $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -o $@
+
+$(WEB)/glint.wasm: $(BUILD)/glint.js
+	@mkdir -p $(@D)
+	@cp $(BUILD)/glint.wasm $@
+
+# The loader from emscripten and the worker around it become one file.
+$(BUILD)/worker.mjs: $(BUILD)/glint.js bindings/web/worker.mjs
+	@cat $^ > $@
+endif
+
+# The pages. npm brings the editor, the bundler and the test tools, in the versions of package-lock.json.
+NPM         := $(BUILD)/npm
+PAGES_SRC   := $(wildcard bindings/web/pages/*.js bindings/web/pages/*.mjs)
+COURSE      := $(wildcard scripts/course/*.lua)
+WEB_PAGES   := $(addprefix $(WEB)/,glint.mjs worker.mjs package.json LICENSE glint-figure.js playground.js publish.js glint.wasm.gz site.css index.html \
+                  figure.html course.html \
+                  examples/index.json examples/moving_light.png $(patsubst scripts/%,%,$(COURSE) $(COURSE:.lua=.png)))
+
+web-pages: $(WEB_PAGES)
+
+$(NPM)/node_modules: $(addprefix bindings/web/pages/,package.json package-lock.json .npmrc)
+	@mkdir -p $(NPM)
+	@cp $^ $(NPM)
+	$(call say,NPM)
+	$(Q)cd $(NPM) && npm ci --silent
+	@touch $@
+
+# esbuild finds packages next to the sources.
+$(NPM)/sources: $(PAGES_SRC) bindings/web/glint.mjs $(WEB_OBJECTS)/worker.mjs | $(NPM)/node_modules
+	@cp $^ $(NPM)
+	@touch $@
+
+$(NPM)/worker.txt: $(WEB)/worker.mjs
+	@cp $< $@
+
+$(WEB)/glint.mjs: BUNDLE := --bundle --external:node:*
+$(WEB)/worker.mjs: BUNDLE :=
+$(WEB)/playground.js: BUNDLE := --bundle --external:./glint.mjs --external:./glint-figure.js
+$(WEB)/publish.js: BUNDLE := --bundle --external:node:* --loader:.txt=text
+$(WEB)/publish.js: $(NPM)/worker.txt
+$(addprefix $(WEB)/,glint.mjs worker.mjs playground.js publish.js): $(WEB)/%: $(NPM)/sources
+	$(call say,BUNDLE)
+	$(Q)cd $(NPM) && node_modules/.bin/esbuild $* $(BUNDLE) --format=esm --minify --log-level=warning --outfile=$(CURDIR)/$@
+
+$(WEB)/package.json: bindings/web/package.json engine/glint.h
+	@sed -e 's/@version@/$(VERSION)/' $< > $@
+
+$(WEB)/LICENSE: LICENSE
+	@cp $< $@
+
+$(WEB)/glint.wasm.gz: $(WEB)/glint.wasm
+	@gzip -9 -n <$< >$@
+
+$(addprefix $(WEB)/,glint-figure.js site.css index.html figure.html course.html): $(WEB)/%: bindings/web/pages/%
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(WEB)/examples/index.json: $(WEB)/glint.mjs $(WEB)/worker.mjs $(WEB)/glint.wasm bindings/web/pages/examples.mjs $(wildcard scripts/*.lua)
+	$(Q)mkdir -p $(@D) && node bindings/web/pages/examples.mjs $(WEB) scripts
+
+$(WEB)/examples/moving_light.png: scripts/moving_light.lua $(BUILD)/glint
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/glint $< --quiet --set frames=1 --size 640x360 -o $@
+
+$(WEB)/course/%.lua: scripts/course/%.lua
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(WEB)/course/%.png: scripts/course/%.lua $(BUILD)/glint
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/glint $< --quiet -o $@
+
+check-web: web ## the module in node (bits, errors, limits, memory), the pages in headless Chromium, which it installs through apt
+	@tests/deps.sh build test films
+	@$(MAKE) --no-print-directory all
+	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh tests/web/pages.sh
+
+site: web $(BUILD)/meta/glint.lua ## build/site: the pages of make web with the manual, the gallery and the reference, for any static host
+	@rm -rf $(BUILD)/site
+	$(Q)node $(NPM)/site.mjs $(CURDIR) $(WEB) $(BUILD)/site
+	@cp bindings/web/pages/search.js $(BUILD)/site
