@@ -90,22 +90,24 @@ static int learn(lua_State *L)
     return 1;
 }
 
-static size_t count_lines(const char *text, size_t length, size_t most)
+// Returns the number of lines, at most `most`, and the bytes that they take.
+static size_t count_lines(const char *text, size_t length, size_t most, size_t *bytes)
 {
-    const char *at = text, *const end = text + length;
+    const char *at = text, *newline;
     size_t count = 0;
-    while (count < most && at < end && (at = memchr(at, '\n', (size_t)(end - at)))) {
+    while (count < most && (newline = memchr(at, '\n', length - (size_t)(at - text)))) {
         count++;
-        at++;
+        at = newline + 1;
     }
+    *bytes = (size_t)(at - text);
     return count;
 }
 
-// read(text, at, most): returns the position after the rows, their number, the number of lines, and an array for each
-// column. At most `most` rows.
+// read(text, at, most): returns the position after the rows, their number, the number of lines, whether the next line
+// was refused, and an array for each column. Reads at most `most` lines.
 static int read_rows(lua_State *L)
 {
-    size_t length, used, lines;
+    size_t length, used, lines, bytes;
     reader *r = luaL_checkudata(L, 1, READER);
     const char *text = luaL_checklstring(L, 2, &length);
     const lua_Integer at = luaL_checkinteger(L, 3), most = luaL_checkinteger(L, 4);
@@ -113,7 +115,7 @@ static int read_rows(lua_State *L)
     lua_settop(L, 3);
     text += at - 1;
     length -= (size_t)at - 1;
-    const size_t rows_max = count_lines(text, length, most > 0 ? (size_t)most : 0);
+    const size_t rows_max = count_lines(text, length, most > 0 ? (size_t)most : 0, &bytes);
     luaL_checkstack(L, COLUMNS_MAX + 4, "columns");
     for (size_t c = 0; c < r->count && !r->checks; c++) {
         const bool is_word = r->columns[c].kind == GLINT_COLUMN_WORD;
@@ -121,13 +123,14 @@ static int read_rows(lua_State *L)
         r->columns[c].numbers = array->numbers;
         r->columns[c].indices = is_word ? array->wholes : NULL;
     }
-    const size_t rows = glint_rows_read(&r->desc, text, length, rows_max, &used, &lines);
+    const size_t rows = glint_rows_read(&r->desc, text, bytes, rows_max, &used, &lines);
     for (size_t c = 0; c < r->count && !r->checks; c++)
         glintL_to_array(L, 4 + (int)c)->count = rows;
     lua_pushinteger(L, at + (lua_Integer)used);
     lua_pushinteger(L, (lua_Integer)rows);
     lua_pushinteger(L, (lua_Integer)lines);
-    lua_rotate(L, 4, 3);
+    lua_pushboolean(L, used < bytes);
+    lua_rotate(L, 4, 4);
     return lua_gettop(L) - 3;
 }
 

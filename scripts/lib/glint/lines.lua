@@ -11,6 +11,7 @@ source.__index = source
 local LONGEST = 40 -- characters of a line shown in an error
 local LINE_MAX = 1 << 20 -- bytes
 local BLOCK = 1 << 20 -- bytes read at once
+local AHEAD = 64 -- lines that are read in bulk after a line that was refused; then four times as many, and so on
 
 -- Formats of other programs that no reader here accepts: by a file's extension, and by its first bytes.
 local ENDINGS = {
@@ -92,7 +93,8 @@ function lines.open(path)
   if not file then error(found, 0) end
   path = found
   if foreign then refuse_foreign(path, foreign) end
-  return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0 }, source)
+  return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0,
+    ahead = AHEAD }, source)
 end
 
 -- Returns the block with lines that end in LF or CRLF. Carriage returns without an LF after them become line ends, and
@@ -176,15 +178,20 @@ end
 ---@return integer count
 ---@return boolean? left  rows returned false
 function source:rows(reader, most, rows)
-  local total = 0
-  local function take(at, n, passed, ...)
+  local total, is_refused = 0, false
+  local function take(at, n, passed, refused, ...)
+    is_refused = refused
     if n > 0 and rows(n, ...) == false then return true end
     self.at, self.number, total = at, self.number + passed, total + n
+    self.ahead = refused and AHEAD or math.min(4 * self.ahead, BLOCK)
   end
-  while total < most do
-    if take(reader:read(self.block, math.min(self.at, #self.block + 1), most - total)) then return total, true end
-    if total == most or not self.file or self.block:find("\n", self.at, true) then break end
-    line_end(self)
+  while total < most and not is_refused do
+    local wanted = math.min(most - total, self.ahead)
+    if take(reader:read(self.block, math.min(self.at, #self.block + 1), wanted)) then return total, true end
+    if not is_refused and not self.block:find("\n", self.at, true) then
+      if not self.file then break end
+      line_end(self)
+    end
   end
   return total
 end
