@@ -113,12 +113,25 @@ static const char *find_name(const watch_requests *requests, const char *name)
     return at ? at + length + 1 : NULL;
 }
 
+// Returns whether a text is one of "a, b or c", to the end of the line.
+static bool is_choice(const char *expected, const char *text)
+{
+    const size_t length = strlen(text);
+    for (const char *at = expected; length && (at = strstr(at, text)) && at < expected + strcspn(expected, "\n"); at++)
+        if ((at == expected || (at - expected > 1 && memcmp(at - 2, ", ", 2) == 0) || (at - expected > 3 && memcmp(at - 4, " or ", 4) == 0)) &&
+            (strchr(",\n", at[length]) || strncmp(at + length, " or ", 4) == 0))
+            return true;
+    return false;
+}
+
 // Returns whether a text is a value of the type and range in the rest of a parameter's line.
 static bool is_value(const char *kind, const char *text)
 {
     char *end;
     if (*kind == 'b')
         return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;
+    if (*kind == 'c')
+        return is_choice(strchr(kind, '=') + 1, text);
     if (*kind == 's')
         return true;
     const double least = strtod(kind + 1, &end), most = strtod(end, &end), value = strtod(text, &end);

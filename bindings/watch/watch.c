@@ -304,8 +304,9 @@ static int params_protected(lua_State *L)
         lua_getfield(L, 4, "type");
         lua_getfield(L, 4, "whole");
         const char *type = lua_tostring(L, 6);
+        const bool chooses = lua_getfield(L, 4, "choices") == LUA_TTABLE;
         char range[64];
-        snprintf(range, sizeof range, "%c%.17g %.17g", *type == 'n' && lua_toboolean(L, 7) ? 'w' : *type, number_or(L, 4, "min", -HUGE_VAL),
+        snprintf(range, sizeof range, "%c%.17g %.17g", *type == 's' && chooses ? 'c' : *type == 'n' && lua_toboolean(L, 7) ? 'w' : *type, number_or(L, 4, "min", -HUGE_VAL),
                  number_or(L, 4, "max", HUGE_VAL));
         lua_pushfstring(L, "%s%s=%s=%s\n", lua_tostring(L, 3), lua_tostring(L, 5), range, glintL_push_allowed(L, 4));
         lua_replace(L, 3);

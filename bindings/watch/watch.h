@@ -111,7 +111,7 @@ typedef struct watch_requests {
     double since_ms; ///< time of the first pending request
     int64_t wanted; ///< frame to show
     /// The script's parameters, a line each, after a line break: the name, "=", a letter for the type (n: number, w: whole
-    /// number, b: boolean, s: other), the least and the largest number, "=", and what is expected; owned. NULL: unknown
+    /// number, b: boolean, c: choice, s: other), the least and the largest number, "=", and what is expected; owned. NULL: unknown
     char *names;
     glintL_set *overrides; ///< owned with their texts; only for these names
     size_t override_count;

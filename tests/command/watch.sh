@@ -35,7 +35,7 @@ seen() { grep -c "$1" events; }
 scene() { # SHADE [EXTRA]: a script that reads a module and a file
     cat <<END
 local glint = require "glint"
-local P = glint.params { shade = { $1, min = 0, max = 1 }, turns = 2 }
+local P = glint.params { shade = { $1, min = 0, max = 1 }, turns = 2, kind = { "matt", choices = { "matt", "old gold", "wax" } } }
 local radius = require("parts.ball")
 local color = io.open("color.txt"):read "a"
 ${2:-}
@@ -219,6 +219,10 @@ turns" ""; do
     check "no parameter '$name'" is 404 "$(status POST "${path}set" "$name=1")"
 done
 check "none was kept" test -z "$(grep 'no such parameter' events)"
+for value in gold old wa "matt," or ""; do
+    check "no choice '$value'" is 400 "$(status POST "${path}set" "kind=$value")"
+    check "and the choices" grep -qF "kind: matt, old gold or wax expected, got '$value'" <(ask POST "${path}set" "kind=$value")
+done
 for value in 7 -1 nan NAN inf -inf 1e999 AAAA 0.5x ""; do
     check "no value '$value'" is 400 "$(status POST "${path}set" "shade=$value")"
     check "and why" grep -qF "shade: number 0 .. 1 expected, got '$value'" <(ask POST "${path}set" "shade=$value")
