@@ -1,6 +1,7 @@
 // glint compare A B: how much two pictures differ. It uses idiff's exit codes.
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 #include "bindings/command/cli.h"
 #include "engine/glint_compare.h"
@@ -46,7 +47,10 @@ static void print_for_people(FILE *out, char **files, const glint_compare_result
                              const glint_compare_desc *desc, verdict found)
 {
     static const char *const words[] = { "same", "nearly the same", "different" };
-    fprintf(out, "%s and %s: %s\n", files[0], files[1], words[found]);
+    glintL_put_text(out, files[0], strlen(files[0]));
+    fputs(" and ", out);
+    glintL_put_text(out, files[1], strlen(files[1]));
+    fprintf(out, ": %s\n", words[found]);
     fprintf(out, "  mean error %g, RMS error %g, peak SNR %g dB\n", result->mean_error, result->rms_error,
             result->peak_snr);
     fprintf(out, "  max error %g", result->max_error);
