@@ -23,8 +23,8 @@
 --     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
 -- --size sets the size of the pictures. -o 'set/%03d.png' names them, and the other files go into the same folder. The
 -- last picture, after the last light, is the scene in white ambient light.
--- Bright materials (gold, glossy) exceed white: --exposure auto finds an exposure for each folder that clips nothing, and
--- --exposure -1.5 sets one for all. The intensities in a folder are scaled to match.
+-- Bright materials (gold, glossy) exceed white: --exposure auto finds an exposure for each folder that clips nothing,
+-- and --exposure -1.5 sets one for all. The intensities in a folder are scaled to match.
 -- An interrupted job continues when it is run again, and --shard divides it between several machines.
 -- To use your own scene, add its shapes to `OBJECTS`; with a camera along -z the axes stay as above.
 local glint = require "glint"
