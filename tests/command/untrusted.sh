@@ -326,7 +326,7 @@ result $? "no control characters in a plan"
 "$glint" $'none\e[31m.lua' >out 2>err
 [ $? -eq 2 ] && grep -qF 'none\x1b[31m.lua' err
 result $? "names of files are shown escaped"
-printf 'return require("glint").scene { ambient = 1 }\n' >empty.lua
+printf 'return require("glint").scene { camera = require("glint").camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }\n' >empty.lua
 "$glint" empty.lua -o $'e\e[2J.png' --size 4x4 >out 2>err && "$glint" compare $'e\e[2J.png' $'e\e[2J.png' >out 2>>err && ! raw out err
 result $? "names of pictures are shown escaped"
 
