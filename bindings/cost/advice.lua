@@ -30,13 +30,25 @@ end
 
 -- ---- The choice ----
 
+-- Lists the rows that pass the test: { row, is_certain }. is_nearest: only the nearest of each knob.
+local function list(rows, test, is_nearest)
+  local out, at = {}, {}
+  for _, row in ipairs(rows) do
+    local passes, i = test(row), is_nearest and at[row.knob] or #out + 1
+    if passes ~= false and (not out[i] or row.far < out[i][1].far) then
+      out[i], at[row.knob] = { row, passes == true }, i
+    end
+  end
+  return out
+end
+
 -- Returns the row that no other beats; of rows that are about as good, the first. beats(a, b): nil if not decided,
--- which makes them rivals: both are in doubt. candidates: { row, is_certain }.
+-- which makes them rivals: both are in doubt.
 local function choose(candidates, beats, doubts)
   local best
-  local function doubt(row, rivals)
-    row.is_rival = rivals
-    doubts[#doubts + 1] = row
+  local function doubt(row, is_rival)
+    if not doubts[row] then doubts[#doubts + 1], doubts[row], row.is_rival = row, true, false end
+    row.is_rival = row.is_rival or is_rival
   end
   for _, is_certain in ipairs { true, false } do
     for _, candidate in ipairs(candidates) do
@@ -50,33 +62,6 @@ local function choose(candidates, beats, doubts)
     end
   end
   return best
-end
-
-local function both(a, b)
-  if a == false or b == false then return false end
-  return a and b
-end
-
-local function list(rows, test)
-  local out = {}
-  for _, row in ipairs(rows) do
-    local is = test(row)
-    if is ~= false then out[#out + 1] = { row, is == true } end
-  end
-  return out
-end
-
--- Returns the nearest of each knob's candidates: its row is next to the script's own, or not far from it.
-local function nearest(candidates)
-  local out, at = {}, {}
-  for _, candidate in ipairs(candidates) do
-    local row, i = candidate[1], at[candidate[1].knob]
-    if not i or row.far < out[i][1].far then
-      i = i or #out + 1
-      out[i], at[row.knob] = candidate, i
-    end
-  end
-  return out
 end
 
 -- Returns the least and the most accuracy that is gained for the time.
@@ -94,18 +79,20 @@ end
 
 local function saves(row) return the.is_below(row.time, row.time_margin, SAVING) end
 
--- Returns the advised row, or the rows whose order is not decided.
+-- Returns the advised row, or the rows whose order is not decided: a saving, or else a step to more accuracy, or else
+-- the saving that costs the least accuracy.
 local function advised(study, rows)
   local doubts = {}
-  local row = choose(list(rows, function(r) return both(r.is_as_good, saves(r)) end), function(a, b)
+  local function saves_alike(row) return row.is_as_good ~= false and saves(row) and row.is_as_good end
+  local function gains(row) return not row.loss and the.is_below(row.average, row.margin, GAIN) end
+  local row = choose(list(rows, saves_alike), function(a, b)
     local time, margin = the.compare_times(a.case, b.case)
     return the.is_below(time, margin, SAVING)
   end, doubts)
   if #doubts > 0 or row then return row, doubts end
-  row = choose(nearest(list(rows, function(r) return not r.loss and the.is_below(r.average, r.margin, GAIN) end)),
-    is_worth_more, doubts)
+  row = choose(list(rows, gains, true), is_worth_more, doubts)
   if #doubts > 0 or row then return row, doubts end
-  row = choose(nearest(list(rows, function(r) return not r.loss and saves(r) end)), function(a, b)
+  row = choose(list(rows, function(r) return not r.loss and saves(r) end, true), function(a, b)
     local average, margin = the.compare(study, a.case, b.case)
     return the.is_below(average, margin, -log(CLEARLY))
   end, doubts)

@@ -52,6 +52,8 @@ typedef struct cost_scene {
     cost_shaded *shaded; ///< meshes whose shading is currently edited
     size_t shaded_count;
     glint_camera *camera, *camera_note;
+    glint_shape **shapes; ///< with the children of groups, once per instance
+    size_t shape_count;
     glint_material **materials, **material_notes;
     size_t material_count;
     glint_light **lights, **light_notes;

@@ -31,13 +31,11 @@ static int errors(lua_State *L)
     if (glint_reference_measure(cost_study_of(L)->references[lua_toboolean(L, 3)], cost_image_at(L, 1),
                                 (int)luaL_checkinteger(L, 2), &found, &error))
         return cost_fail(L, &error);
+    const double values[] = { found.rmse, found.relmse, found.max_code, found.over1, found.over8, found.flip };
+    static const char *const NAMES[] = { "rmse", "relmse", "max_code", "over1", "over8", "flip" };
     lua_newtable(L);
-    glintL_set_number(L, "rmse", found.rmse);
-    glintL_set_number(L, "relmse", found.relmse);
-    glintL_set_number(L, "max_code", found.max_code);
-    glintL_set_number(L, "over1", found.over1);
-    glintL_set_number(L, "over8", found.over8);
-    glintL_set_number(L, "flip", found.flip);
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++)
+        glintL_set_number(L, NAMES[i], values[i]);
     return 1;
 }
 

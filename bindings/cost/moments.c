@@ -9,13 +9,11 @@
 
 static const int COUNTS[] = { 1, 2, 4, 8, 16, 32 };
 
-// The recorded state of each object at one time. The shapes are borrowed.
+// The recorded state of each object at one time.
 typedef struct moment {
     int times, k;
     cost_scene scene;
-    glint_shape **shapes;
-    glint_shape_desc *shape_descs; // their materials are retained
-    size_t shape_count;
+    glint_shape_desc *shape_descs; // of the scene's shapes; their materials are retained
 } moment;
 
 struct cost_moments {
@@ -27,41 +25,23 @@ struct cost_moments {
 
 // ---- Recording ----
 
-static size_t gather_shapes(glint_shape *shape, glint_shape **out)
+static bool note_shapes(moment *m)
 {
-    size_t count = 1;
-    if (out)
-        *out = shape;
-    for (size_t i = 0; i < glint_group_count(shape); i++)
-        count += gather_shapes(glint_group_child(shape, i), out ? out + count : NULL);
-    return count;
-}
-
-static bool note_shapes(moment *m, const glint_scene *scene)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
-        count += gather_shapes(glint_scene_shape_at(scene, i), NULL);
-    m->shapes = calloc(count + 1, sizeof *m->shapes);
-    m->shape_descs = calloc(count + 1, sizeof *m->shape_descs);
-    if (!m->shapes || !m->shape_descs)
-        return false;
-    for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
-        m->shape_count += gather_shapes(glint_scene_shape_at(scene, i), m->shapes + m->shape_count);
-    for (size_t i = 0; i < m->shape_count; i++) {
-        m->shape_descs[i] = *glint_shape_get(m->shapes[i]);
+    m->shape_descs = calloc(m->scene.shape_count + 1, sizeof *m->shape_descs);
+    for (size_t i = 0; i < m->scene.shape_count && m->shape_descs; i++) {
+        m->shape_descs[i] = *glint_shape_get(m->scene.shapes[i]);
         if (m->shape_descs[i].material)
             glint_material_retain(m->shape_descs[i].material);
     }
-    return true;
+    return m->shape_descs != NULL;
 }
 
 static bool has_same_objects(const moment *m, const moment *n)
 {
     const cost_scene *a = &m->scene, *b = &n->scene;
-    return m->shape_count == n->shape_count && a->light_count == b->light_count &&
+    return a->shape_count == b->shape_count && a->light_count == b->light_count &&
            a->material_count == b->material_count && a->camera == b->camera &&
-           !memcmp(m->shapes, n->shapes, m->shape_count * sizeof *m->shapes) &&
+           !memcmp(a->shapes, b->shapes, a->shape_count * sizeof *a->shapes) &&
            !memcmp(a->lights, b->lights, a->light_count * sizeof *a->lights) &&
            !memcmp(a->materials, b->materials, a->material_count * sizeof *a->materials);
 }
@@ -78,9 +58,9 @@ static bool see(void *data, glint_scene *scene, int times, int k)
     moments->list = grown;
     moment *m = &grown[moments->count++];
     *m = (moment) { .times = times, .k = k };
-    if (!note_shapes(m, scene) || !cost_scene_open(&m->scene, scene))
+    if (!cost_scene_open(&m->scene, scene) || !note_shapes(m))
         return false;
-    moments->notes += m->shape_count;
+    moments->notes += m->scene.shape_count;
     moments->is_large = moments->notes > NOTES_MAX;
     moments->is_odd = !has_same_objects(m, grown);
     return true;
@@ -95,10 +75,9 @@ cost_moments *cost_moments_open(glintL_moments *out)
 
 static void free_moment(moment *m)
 {
-    for (size_t i = 0; i < m->shape_count; i++)
+    for (size_t i = 0; m->shape_descs && i < m->scene.shape_count; i++)
         glint_material_release(m->shape_descs[i].material);
     cost_scene_close(&m->scene);
-    free(m->shapes);
     free(m->shape_descs);
 }
 
@@ -136,8 +115,8 @@ glint_status cost_moments_enter(const cost_moments *moments, int times, int k, c
         m++;
     *scene = &m->scene;
     glint_status status = cost_scene_restore(&m->scene, error);
-    for (size_t i = 0; i < m->shape_count && !status; i++)
-        if (memcmp(glint_shape_get(m->shapes[i]), &m->shape_descs[i], sizeof *m->shape_descs))
-            status = glint_shape_set(m->shapes[i], &m->shape_descs[i], error);
+    for (size_t i = 0; i < m->scene.shape_count && !status; i++)
+        if (memcmp(glint_shape_get(m->scene.shapes[i]), &m->shape_descs[i], sizeof *m->shape_descs))
+            status = glint_shape_set(m->scene.shapes[i], &m->shape_descs[i], error);
     return status;
 }

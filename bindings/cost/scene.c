@@ -10,28 +10,45 @@ static int by_address(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-// Lists the materials of a shape, or of all shapes in a group; returns how many there are. NULL: only counts.
-static size_t gather_materials(const glint_shape *shape, glint_material **out)
+// Lists a shape, and all shapes in a group; returns how many there are. NULL: only counts.
+static size_t gather_shapes(glint_shape *shape, glint_shape **out)
 {
-    glint_material *const *list;
-    size_t count = glint_shape_materials(shape, &list);
-    if (out && count > 0)
-        memcpy(out, list, count * sizeof *list);
+    size_t count = 1;
+    if (out)
+        *out = shape;
     for (size_t i = 0; i < glint_group_count(shape); i++)
-        count += gather_materials(glint_group_child(shape, i), out ? out + count : NULL);
+        count += gather_shapes(glint_group_child(shape, i), out ? out + count : NULL);
+    return count;
+}
+
+static size_t gather_all(const glint_scene *scene, glint_shape **out)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
+        count += gather_shapes(glint_scene_shape_at(scene, i), out ? out + count : NULL);
     return count;
 }
 
 // Lists each material once, because shapes share them.
-static void list_materials(cost_scene *scene)
+static bool list_materials(cost_scene *scene)
 {
+    glint_material *const *list;
     size_t count = 0;
-    for (size_t i = 0; i < glint_scene_shape_count(scene->original); i++)
-        count += gather_materials(glint_scene_shape_at(scene->original, i), scene->materials + count);
+    for (size_t i = 0; i < scene->shape_count; i++)
+        count += glint_shape_materials(scene->shapes[i], &list);
+    scene->materials = calloc(count + 1, sizeof *scene->materials);
+    scene->material_notes = calloc(count + 1, sizeof *scene->material_notes);
+    if (!scene->materials || !scene->material_notes)
+        return false;
+    count = 0;
+    for (size_t i = 0; i < scene->shape_count; i++)
+        for (size_t k = glint_shape_materials(scene->shapes[i], &list); k > 0; k--)
+            scene->materials[count++] = list[k - 1];
     qsort(scene->materials, count, sizeof *scene->materials, by_address);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || scene->materials[i] != scene->materials[scene->material_count - 1])
             scene->materials[scene->material_count++] = scene->materials[i];
+    return true;
 }
 
 static bool note_objects(cost_scene *scene)
@@ -50,18 +67,17 @@ static bool note_objects(cost_scene *scene)
 bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
 {
     const size_t lights = glint_scene_light_count(engine_scene);
-    size_t most = 1;
-    for (size_t i = 0; i < glint_scene_shape_count(engine_scene); i++)
-        most += gather_materials(glint_scene_shape_at(engine_scene, i), NULL);
     *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene };
     scene->camera = glint_scene_get(engine_scene)->camera;
-    scene->materials = calloc(most, sizeof *scene->materials);
-    scene->material_notes = calloc(most, sizeof *scene->material_notes);
+    scene->shape_count = gather_all(engine_scene, NULL);
+    scene->shapes = calloc(scene->shape_count + 1, sizeof *scene->shapes);
     scene->lights = calloc(lights + 1, sizeof *scene->lights);
     scene->light_notes = calloc(lights + 1, sizeof *scene->light_notes);
-    if (!scene->materials || !scene->material_notes || !scene->lights || !scene->light_notes)
+    if (!scene->shapes || !scene->lights || !scene->light_notes)
         return false;
-    list_materials(scene);
+    gather_all(engine_scene, scene->shapes);
+    if (!list_materials(scene))
+        return false;
     for (scene->light_count = 0; scene->light_count < lights; scene->light_count++)
         scene->lights[scene->light_count] = glint_scene_light_at(engine_scene, scene->light_count);
     return note_objects(scene);
@@ -75,6 +91,7 @@ void cost_scene_close(cost_scene *scene)
         glint_light_release(scene->light_notes[i]);
     glint_camera_release(scene->camera_note);
     glint_scene_release(scene->note);
+    free(scene->shapes);
     free(scene->materials);
     free(scene->material_notes);
     free(scene->lights);

@@ -112,19 +112,14 @@ function the.whole_ms(study)
   return 1.5 * sum
 end
 
--- Leaves out the slowest cases until the others fit the budget.
+-- Leaves out the slowest cases if not all fit the budget.
 local function fit_cases(study)
-  repeat
-    local sum, slowest, most = study.own.estimate_ms * the.RUNS_LEAST, nil, 0
-    for i = 2, #study.cases do
-      local case = study.cases[i]
-      local price = case.left_out and 0 or the.price_of(study, case)
-      sum = sum + price
-      if price > 0 and price >= most then slowest, most = case, price end
-    end
-    local fits = not slowest or sum <= the.left_ms(study)
-    if not fits then slowest.left_out = true end
-  until fits
+  local cases, sum = table.move(study.cases, 2, #study.cases, 1, {}), study.own.estimate_ms * the.RUNS_LEAST
+  table.sort(cases, function(a, b) return a.estimate_ms < b.estimate_ms end)
+  for _, case in ipairs(cases) do
+    sum = sum + the.price_of(study, case)
+    case.left_out = sum > the.left_ms(study)
+  end
 end
 
 -- Runs the cases once and measures their errors. Cases that do not fit the budget are left out.
