@@ -167,25 +167,37 @@ static void store_object_id(const glint_tile *tile, const glint_tile_frame *fram
     glint_tile_store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
 
-/// Returns the opacity of the surface of sample i, which is 1 unless the material is translucent.
-static double opacity_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+/// Adds the light that a surface reflects and transmits at normal incidence to its diffuse reflectance, up to 1.
+/// Denoisers expect this for metal and glass (Open Image Denoise 2, "Albedo").
+static void add_bounces(const glint_bounce_material *m, double color[3])
 {
-    glint_bounce_material buffer;
-    return plan->clears ? 1 - glint_tile_bouncing(tile, plan, i, &buffer)->clear : 1;
+    const double r = (m->ior - 1) / (m->ior + 1), reflected = m->fresnel ? r * r : 1;
+    const double transmitted = m->fresnel ? 1 - reflected : 1;
+    for (int c = 0; c < 3; c++) {
+        const double mirror = reflected * m->mirror[c] * m->specular[c] * (m->schlick ? m->f0[c] : 1);
+        color[c] = fmax(color[c], fmin(color[c] + mirror + transmitted * m->transmission[c], 1));
+    }
 }
 
-/// Stores diffuse reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity
-/// of 0 they are 0.
+/// Stores reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity of 0 they
+/// are 0.
 static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
 {
+    const glint_plan *plan = frame->plan;
     float albedo[3][GLINT_TILE_SAMPLES];
-    double buffer[3];
+    double buffer[3], color[3] = { 0 };
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const bool hit = glint_has_lane(tile->at.hits, i);
-        const double *kd = hit ? glint_tile_diffuse(tile, frame->plan, i, buffer) : NULL;
-        const double opacity = hit ? opacity_of(tile, frame->plan, i) : 0;
+        double opacity = glint_has_lane(tile->at.hits, i) ? 1 : 0;
+        if (opacity > 0)
+            vec_copy(color, glint_tile_diffuse(tile, plan, i, buffer));
+        if (opacity > 0 && plan->bouncing) {
+            glint_bounce_material own;
+            const glint_bounce_material *m = glint_tile_bouncing(tile, plan, i, &own);
+            opacity = plan->clears ? 1 - m->clear : 1;
+            add_bounces(m, color);
+        }
         for (int c = 0; c < 3; c++)
-            albedo[c][i] = opacity > 0 ? (float)(kd[c] / opacity) : 0;
+            albedo[c][i] = opacity > 0 ? (float)(color[c] / opacity) : 0;
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_ALBEDO, albedo[0]);
 }

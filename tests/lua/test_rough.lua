@@ -285,5 +285,26 @@ function tests.same_everywhere()
   os.remove(script)
 end
 
+-- The pass albedo includes what a surface reflects and transmits at normal incidence: Fresnel's colour of metal, 1 for glass.
+function tests.albedo_for_denoisers()
+  local cases = {
+    { { 0.3, 0.3, 0.3 }, { diffuse = 0.3 } }, { { 2, 2, 2 }, { diffuse = 2 } },
+    { { 1, 0.77, 0.34 }, { diffuse = 0, model = "cook_torrance", specular = 1, f0 = { 1, 0.77, 0.34 }, roughness = 0.3 } },
+    { { 0.14, 0.14, 0.14 }, { diffuse = 0.1, model = "cook_torrance", specular = 1, f0 = 0.04, roughness = 0.3 } },
+    { { 0.1, 0.1, 0.1 }, { diffuse = 0.1, model = "cook_torrance", specular = 1, f0 = 0.04, mirror = 0 } }, -- lamps alone
+    { { 0.6, 0.6, 0.6 }, { diffuse = 0, mirror = 0.6, roughness = 0.2 } }, { { 0.9, 0.8, 1 }, { diffuse = 0.5, mirror = { 0.4, 0.3, 0.9 } } },
+    { { 1, 1, 1 }, { diffuse = 0, mirror = 1, transmission = 1, ior = 1.5, fresnel = true } },
+    { { 0.96 * 0.5 + 0.04, 1, 1 }, { diffuse = 0, mirror = 1, transmission = { 0.5, 1, 1 }, ior = 1.5, fresnel = true, roughness = 0.2 } },
+    { { 0.6, 0.6, 0.6 }, { diffuse = 0.2, opacity = 0.5, mirror = 0.4 } }, -- without its opacity
+    { { 0.45, 0.45, 0.45 }, { diffuse = 0.25, mirror = glint.pattern(function() return 0.2 end) } },
+  }
+  for i, case in ipairs(cases) do
+    local image = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
+      glint.sphere { center = { 0, 0, 0 }, radius = 2, material = glint.material(case[2]) },
+    }:render { width = 3, height = 3, output = "none", passes = "albedo" }
+    for c, want in ipairs(case[1]) do near(select(c, image:pixel(1, 1, "albedo")), want, 1e-6, ("albedo %d.%d"):format(i, c)) end
+  end
+end
+
 tally.run(tests)
 tally.finish()
