@@ -1072,8 +1072,8 @@ function glint.shader(f) end
 ---@field transfer? "srgb"|"linear"  how the file's values are read. Default "srgb", except for a file that is marked as linear
 
 --- A picture. Inside a pattern call it: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) returns red, green and
---- blue as a vector, and alpha as its field `a`. (0, 0) is the lower left corner, (1, 1) the upper right one. Without a
---- footprint the picture is not filtered. As a material's field the texture is placed by the shape's uv, as a scene's
+--- blue as a vector, and alpha as its field `a`. (0, 0) is the lower left corner, (1, 1) the upper right one. A second
+--- footprint is the width along v. Without a footprint the picture is not filtered. As a material's field the texture is placed by the shape's uv, as a scene's
 --- background by the direction.
 ---@class glint.texture: glint.texture_fields
 ---@field width integer  pixels

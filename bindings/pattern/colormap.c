@@ -155,7 +155,7 @@ static int colors_of(lua_State *L, const glint_texture *texture, double low, dou
         return glintL_error(L, "colormap: array of one column expected, got %I columns", (LUAI_UACINT)a->width);
     const double *missing = glintL_to_vector(L, lua_upvalueindex(5));
     glintL_array *out = glintL_push_array(L, a->count, 3, false);
-    glintL_term in[3] = { [1] = glintL_number_term(0.5), [2] = glintL_number_term(0) }, color[4];
+    glintL_term in[4] = { [1] = glintL_number_term(0.5) }, color[4];
     for (size_t i = 0; i < a->count; i++) {
         const double number = a->is_whole ? (double)a->wholes[i] : a->numbers[i];
         in[0] = place_of(L, glintL_number_term(number), low, high);
@@ -179,7 +179,7 @@ static int color_of(lua_State *L)
     }
     if (glintL_to_array(L, 1))
         return colors_of(L, *texture, low, high);
-    glintL_term in[3] = { [1] = glintL_number_term(0.5), [2] = glintL_number_term(0) }, out[4];
+    glintL_term in[4] = { [1] = glintL_number_term(0.5) }, out[4];
     if (lua_gettop(L) != 1)
         return glintL_error(L, "colormap: one number or symbol expected, got %d values", lua_gettop(L));
     in[0] = place_of(L, glintL_read_term(L, 1, "colormap"), low, high);

@@ -154,8 +154,8 @@ int glintL_map_array(lua_State *L); ///< the method `map` of arrays
 
 // ---- texture.c ----
 
-/// Computes red, green, blue and alpha of a texture at u, v with a footprint. Numbers give numbers.
-void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4]);
+/// Computes red, green, blue and alpha of a texture. in: u, v, and the footprint along each. Numbers give numbers.
+void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[4], glintL_term out[4]);
 
 // ---- Opened by patterns.c ----
 

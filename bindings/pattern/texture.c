@@ -89,18 +89,18 @@ static int close_texture(lua_State *L)
 // ---- photo(u, v, footprint) ----
 
 // Adds a lookup to a builder; numbers give numbers.
-static glint_status apply(glint_builder *builder, const glint_texture *texture, const glintL_term in[3],
+static glint_status apply(glint_builder *builder, const glint_texture *texture, const glintL_term in[4],
                           glintL_term out[4], glint_error *error)
 {
-    glint_value values[3], color[4];
+    glint_value values[4], color[4];
     glint_status status = GLINT_OK;
-    for (int i = 0; i < 3 && !status; i++) {
+    for (int i = 0; i < 4 && !status; i++) {
         values[i] = in[i].value;
         if (!in[i].is_symbol)
             status = glint_builder_number(builder, in[i].number, &values[i], error);
     }
     if (!status)
-        status = glint_builder_texel(builder, texture, values[0], values[1], values[2], color, error);
+        status = glint_builder_texel_by_axis(builder, texture, values[0], values[1], values + 2, color, error);
     for (int i = 0; i < 4 && !status; i++) {
         out[i] = (glintL_term) { .value = color[i] };
         out[i].is_symbol = !glint_builder_is_number(builder, color[i], &out[i].number);
@@ -109,7 +109,7 @@ static glint_status apply(glint_builder *builder, const glint_texture *texture, 
 }
 
 // Looks up a texel. With only plain numbers there may be no builder; then the call makes one.
-void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4])
+void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[4], glintL_term out[4])
 {
     const glintL_trace *trace = glintL_current_trace(L);
     glint_builder *builder = trace ? trace->builder : NULL;
@@ -129,7 +129,7 @@ static int look_up(lua_State *L)
 {
     const glintL_pattern *pattern = lua_touserdata(L, 1);
     glintL_operand uv;
-    glintL_term in[3] = { [2] = glintL_number_term(0) }, out[4];
+    glintL_term in[4] = { [2] = glintL_number_term(0) }, out[4];
     glintL_read_operand(L, 2, "texture: u", &uv);
     int next = 3;
     in[0] = uv.at[0];
@@ -138,8 +138,9 @@ static int look_up(lua_State *L)
         in[1] = glintL_read_term(L, next++, "texture: v");
     if (!lua_isnoneornil(L, next))
         in[2] = glintL_read_term(L, next, "texture: footprint");
-    if (lua_gettop(L) > next)
-        return glintL_error(L, "texture: expected u, v and a footprint, or s.uv and a footprint, got more");
+    in[3] = lua_isnoneornil(L, next + 1) ? in[2] : glintL_read_term(L, next + 1, "texture: footprint along v");
+    if (lua_gettop(L) > next + 1)
+        return glintL_error(L, "texture: expected u, v and one or two footprints, or s.uv and footprints, got more");
     glintL_apply_texture(L, pattern->texture, in, out);
     glintL_push_color(L, out);
     return 1;

@@ -292,19 +292,6 @@ glint_status glint_builder_texture(glint_builder *builder, const glint_texture *
     return GLINT_OK;
 }
 
-glint_status glint_builder_texel_by_axis(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
-                                         const glint_value footprint[2], glint_value out[4], glint_error *error)
-{
-    GLINT_REFUSE_NULL(builder, error);
-    GLINT_REFUSE_NULL(texture, error);
-    GLINT_REFUSE_NULL(footprint, error);
-    GLINT_REFUSE_NULL(out, error);
-    const glint_value operands[] = { u, v, footprint[0], footprint[1] };
-    uint32_t index;
-    const glint_status status = glint_builder_texture(builder, texture, &index, error);
-    return status ? status : glint_builder_add(builder, GLINT_OP_TEXEL, index, operands, out, error);
-}
-
 /// Writes the value that `value` becomes if the input `other` is read instead of UV_FOOTPRINT.
 static glint_status read_instead(glint_builder *builder, glint_value value, glint_input other, glint_value *out, glint_error *error)
 {
@@ -333,16 +320,27 @@ static glint_status read_instead(glint_builder *builder, glint_value value, glin
     return status;
 }
 
-glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
-                                 glint_value footprint, glint_value out[4], glint_error *error)
+glint_status glint_builder_texel_by_axis(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
+                                         const glint_value footprint[2], glint_value out[4], glint_error *error)
 {
     GLINT_REFUSE_NULL(builder, error);
     GLINT_REFUSE_NULL(texture, error);
-    glint_value width[2] = { footprint, footprint };
-    glint_status status = GLINT_OK;
-    for (int k = 0; k < 2 && footprint < builder->count && glint_texture_width(texture) != glint_texture_height(texture) && !status; k++)
-        status = read_instead(builder, footprint, k ? GLINT_INPUT_UV_FOOTPRINT_V : GLINT_INPUT_UV_FOOTPRINT_U, &width[k], error);
-    return status ? status : glint_builder_texel_by_axis(builder, texture, u, v, width, out, error);
+    GLINT_REFUSE_NULL(footprint, error);
+    GLINT_REFUSE_NULL(out, error);
+    const bool square = glint_texture_width(texture) == glint_texture_height(texture);
+    glint_value operands[] = { u, v, footprint[0], footprint[1] };
+    uint32_t index;
+    glint_status status = glint_builder_texture(builder, texture, &index, error);
+    for (int k = 0; k < 2 && !square && footprint[k] < builder->count && !status; k++)
+        status = read_instead(builder, footprint[k], k ? GLINT_INPUT_UV_FOOTPRINT_V : GLINT_INPUT_UV_FOOTPRINT_U, &operands[2 + k], error);
+    return status ? status : glint_builder_add(builder, GLINT_OP_TEXEL, index, operands, out, error);
+}
+
+glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
+                                 glint_value footprint, glint_value out[4], glint_error *error)
+{
+    const glint_value width[2] = { footprint, footprint };
+    return glint_builder_texel_by_axis(builder, texture, u, v, width, out, error);
 }
 
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,

@@ -385,5 +385,23 @@ function tests.bumps_by_texture()
   os.remove(name)
 end
 
+-- A footprint for each axis: stripes along v keep their values whatever the width along v, and become grey along u.
+function tests.two_footprints()
+  local photo = picture(8, 8, function(x) return (x + 1) % 2 end)
+  local function look(u, v, ...)
+    local widths = { ... }
+    return glint.pattern(function(_, s) return photo(s.uv, table.unpack(widths)) end):evaluate { uv = { u, v } }.x
+  end
+  for x = 0, 7 do
+    local u, stripe = (x + 0.5) / 8, (x + 1) % 2
+    near(look(u, 0.4), stripe, 1e-6, "no footprint")
+    near(look(u, 0.4, 0, 0.5), stripe, 1e-6, "wide along v")
+    near(look(u, 0.4, 0.25, 0), 0.5, 0.05, "wide along u")
+    near(look(u, 0.4, 0.25), 0.5, 0.05, "wide along both")
+    check(look(u, 0.4, 0.25) == look(u, 0.4, 0.25, 0.25), "one width is both")
+  end
+  raises("expected u, v and one or two footprints", function() photo(0.5, 0.5, 0, 0, 0) end)
+end
+
 tally.run(tests)
 tally.finish()

@@ -73,7 +73,8 @@ function normal_map.bump(normals, node, map)
   local m, photo, picture = numbers_of(map), normals.photo, normals.picture
   local side, middle = is_mirrored(m) and -1 or 1, place_in_world(m, inside[node.kind](node))
   return glint.pattern(function(p, s)
-    local c = photo(s.uv.u * picture.across, s.uv.v * picture.down, s.uv_footprint * picture.most)
+    local c = photo(s.uv.u * picture.across, s.uv.v * picture.down, s.uv_footprint * picture.wide,
+      s.uv_footprint * picture.high)
     local outward = glint.max(2 * c.b - 1, FLAT) / normals.strength
     local u = to_world(m, along_u[node.kind](p, node))
     local from_within = glint.less(s.n:dot(s.world - middle), 0) -- s.n is on the viewer's side; the shapes are convex

@@ -35,11 +35,11 @@ function surface.picture(call, name, across, down)
   local photo = read_photo(call, name)
   across = check.number(call, "across", across == nil and 1 or across)
   down = check.number(call, "down", down == nil and across or down)
-  local most = max(abs(across), abs(down))
+  local wide, high = abs(across), abs(down)
   local pattern = glint.pattern(function(_, s)
-    return photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * most)
+    return photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * wide, s.uv_footprint * high)
   end)
-  return { photo = photo, across = across, down = down, most = most, pattern = pattern }
+  return { photo = photo, across = across, down = down, wide = wide, high = high, pattern = pattern }
 end
 
 --- Makes a normal map whose normals lean `strength` times as far, repeated `across` and `down`.
@@ -194,10 +194,12 @@ end
 
 local function bump_of(relief, picture, scale)
   local photo, height = relief.photo, relief.height * scale / 3
-  local across, down, most = 1, 1, 1
-  if picture and picture.across then across, down, most = picture.across, picture.down, picture.most end
+  local across, down, wide, high = 1, 1, 1, 1
+  if picture and picture.across then
+    across, down, wide, high = picture.across, picture.down, picture.wide, picture.high
+  end
   return glint.pattern(function(_, s)
-    local c = photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * most)
+    local c = photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * wide, s.uv_footprint * high)
     return height * (c.r + c.g + c.b)
   end)
 end
