@@ -32,7 +32,8 @@ typedef enum glint_column_kind {
 
 /// A field that is read from each row.
 typedef struct glint_column {
-    size_t field; ///< position of the field in its row, from 0
+    size_t field; ///< position of the field in its row, from 0; with `is_fixed`: of its first byte in the line
+    size_t width; ///< with `is_fixed`: bytes of the field; spaces around a number are skipped
     glint_column_kind kind; ///< what the field must be
     double *numbers; ///< memory for the values; a missing value is NaN. NULL: the field is only checked
     const glint_words *words; ///< GLINT_COLUMN_WORD: the table of its words
@@ -44,6 +45,7 @@ typedef struct glint_rows_desc {
     char separator; ///< 0: fields are separated by spaces and tabs; otherwise by this character, and may be "quoted"
     size_t field_count; ///< number of fields in each row; 0: any number
     bool skips; ///< lines that are empty or begin with # are not rows
+    bool is_fixed; ///< fields have fixed positions in lines without tabs; separator and field_count are not used
     const glint_column *columns; ///< in the order of their fields
     size_t column_count; ///< number of columns
     int threads; ///< 1 .. 1024 threads that read parts of a long text; 0: one per processor

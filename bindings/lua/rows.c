@@ -43,16 +43,18 @@ static void add_column(lua_State *L, reader *r)
 {
     static const char *const kinds[] = { "number", "size", "value", "word", NULL };
     luaL_checktype(L, -1, LUA_TTABLE);
-    const lua_Integer field = field_of(L, -1, "field");
+    const lua_Integer field = field_of(L, -1, "field"), width = field_of(L, -1, "width");
+    r->desc.is_fixed = width > 0;
     lua_getfield(L, -1, "kind");
     const int kind = luaL_checkoption(L, -1, NULL, kinds);
     lua_pop(L, 1);
     luaL_argcheck(L, r->count < COLUMNS_MAX, 1, "too many columns");
     luaL_argcheck(L, field >= 1 && (r->count == 0 || (size_t)field > r->columns[r->count - 1].field), 1, "columns in order");
     r->columns[r->count++] =
-        (glint_column) { .field = (size_t)field - 1, .kind = (glint_column_kind)kind, .words = r->words };
+        (glint_column) { .field = (size_t)field - 1, .width = (size_t)width, .kind = (glint_column_kind)kind, .words = r->words };
 }
 
+// With a width, a column has a fixed position: field is its first byte.
 // _row_reader { columns = { { field = 1, kind = "word" }, ... }, fields = 6, separator = ",", skips = true, checks = true }
 static int new_reader(lua_State *L)
 {

@@ -125,8 +125,27 @@ static inline bool read_field(const glint_column *column, text_part text, size_t
     return true;
 }
 
+static bool read_fixed(const glint_rows_desc *desc, cursor line, size_t row)
+{
+    const size_t length = (size_t)(line.end - line.at);
+    if (memchr(line.at, '\t', length))
+        return false;
+    for (const glint_column *column = desc->columns; column < desc->columns + desc->column_count; column++) {
+        if (length < column->field + column->width)
+            return false;
+        text_part text = { line.at + column->field, column->width };
+        if (column->kind != GLINT_COLUMN_WORD)
+            text = trimmed(text.at, text.at + text.length);
+        if (!read_field(column, text, row))
+            return false;
+    }
+    return true;
+}
+
 static bool read_row(const glint_rows_desc *desc, cursor line, size_t row)
 {
+    if (desc->is_fixed)
+        return read_fixed(desc, line, row);
     const glint_column *column = desc->columns, *const last = column + desc->column_count;
     text_part text;
     for (size_t field = 0;; field++) {

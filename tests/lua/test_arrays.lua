@@ -6,6 +6,7 @@ local check, raises = tally.check, tally.raises
 package.path = "scripts/lib/?.lua;" .. package.path
 local glint = require "glint"
 local lammps, particles, points, xyz = require "glint.lammps", require "glint.particles", require "glint.points", require "glint.xyz"
+local pdb = require "glint.pdb"
 
 local folder = build .. "/tests/arrays"
 assert(os.execute(("rm -rf '%s' && mkdir -p '%s'"):format(folder, folder)))
@@ -205,6 +206,44 @@ function tests.colored_points()
   check(all.data[4][4] == 2 and all.data[5][4] < 2 and set.low[1] < 1 and set.high[1] == 902, "their radii and box")
   rows[700] = rows[700]:gsub("%d+$", "256")
   raises("colors.csv:712: red, green and blue 0 .. 255 expected, got \"256\"", read, table.concat(rows, "\n"))
+end
+
+-- Rows in fixed columns: 300 residues of 4 atoms. Of residue 200, a CA without a code comes first, then one with the
+-- code A, which is the same atom; of residue 250, code A is read and B is not.
+function tests.records_of_pdb()
+  local rows, names = {}, { "N ", "CA", "C ", "O " }
+  local function add(name, code, residue, x, element)
+    rows[#rows + 1] = ("ATOM  %5d  %s %sALA A%4d    %8.3f%8.3f%8.3f%6.2f%6.2f          %2s"):format(#rows, name, code,
+      residue, x, -x, x / 4, 1, residue / 10, element)
+  end
+  for residue = 1, 300 do
+    for i, name in ipairs(names) do
+      local code = residue == 250 and name == "CA" and "A" or " "
+      add(name, code, residue, residue + i / 8, name:sub(1, 1))
+    end
+    if residue == 200 then add("CA", "A", residue, 999, "C") end
+    if residue == 250 then add("CA", "B", residue, 999, "C") end
+    if residue % 50 == 0 then rows[#rows + 1] = "TER" end
+  end
+  local frame = pdb.frame(write("fixed.pdb", table.concat(rows, "\n") .. "\nEND\n"))
+  local all, factor = frame:arrays "bfactor"
+  local off = 0
+  for i = 1, #all.positions do
+    local residue, at = (i - 1) // 4 + 1, all.positions[i]
+    local x = residue + ((i - 1) % 4 + 1) / 8
+    off = off + ((at.x == x and at.y == -x and math.abs(at.z - x / 4) < 6e-4 and factor[i] == residue / 10 and
+      all.labels[all.kinds[i]] == names[(i - 1) % 4 + 1]:sub(1, 1)) and 0 or 1)
+  end
+  check(#all.positions == 1200 and off == 0, "%d of %d atoms differ", off, #all.positions)
+  local function read() return particles.new():add_frame(pdb.frame(folder .. "/fixed.pdb")) end
+  check(read().counts.C == 600 and read().counts.N == 300, "kinds of a .pdb")
+  local number = 700
+  rows[number] = rows[number]:sub(1, 40) .. "x" .. rows[number]:sub(42)
+  write("fixed.pdb", table.concat(rows, "\n"))
+  raises("fixed.pdb:700: y, columns 39-46, (a finite number) expected", read)
+  rows[number] = rows[number]:sub(1, 20) .. "\t" .. rows[number]:sub(22)
+  write("fixed.pdb", table.concat(rows, "\n"))
+  raises("fixed.pdb:700: a record in columns without tabs expected", read)
 end
 
 -- Numbers that are hard to round, and forms of each. The seed is fixed.

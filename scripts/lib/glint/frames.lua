@@ -68,15 +68,18 @@ local function reader_of(self, names, size, checks)
   local layout = self.layout
   if not layout then return nil end
   local kinds, columns, order = {}, {}, {}
-  local function add(name, field, kind)
-    if not field then return end
-    columns[#columns + 1] = not kinds[field] and { field = field, kind = kind } or nil
+  local function add(name, place, kind)
+    if not place then return end
+    local is_fixed = type(place) == "table" -- first and last byte
+    local field, width = is_fixed and place[1] or place, is_fixed and place[2] - place[1] + 1 or nil
+    columns[#columns + 1] = not kinds[field] and { field = field, width = width, kind = kind } or nil
     kinds[field] = kinds[field] or name
     return kinds[field] == name
   end
   local is_simple = add("label", layout.label, "word") ~= false
   for _, name in ipairs { "x", "y", "z" } do is_simple = add(name, layout[name], "number") and is_simple end
   is_simple = add("radius", layout.radius, size) ~= false and is_simple
+  for i, place in ipairs(layout.words or {}) do is_simple = add("word" .. i, place, "word") and is_simple end
   for i, name in ipairs(names) do is_simple = add(i, self.places[name], "value") and is_simple end
   if not is_simple or #columns > 64 then return nil end -- a column is read twice: atom by atom
   table.sort(columns, function(a, b) return a.field < b.field end)
@@ -85,11 +88,16 @@ local function reader_of(self, names, size, checks)
     skips = layout.separator ~= nil, checks = checks }, order
 end
 
--- Returns the text of a label in the line just read.
-local function word_of(self)
-  local line, number = self.line, self.layout.label
-  if type(line) == "table" then return line[number] end
-  return line:match("^%s*" .. ("%S+%s+"):rep(number - 1) .. "(%S+)")
+-- Makes a reader read the words of the line just read as a number.
+local function learn(self, reader, number)
+  local line, layout = self.line, self.layout
+  if layout.words_of then
+    for _, word in ipairs(layout.words_of(line)) do reader:learn(word, number) end
+  elseif layout.label and type(line) == "table" then
+    reader:learn(line[layout.label], number)
+  elseif layout.label then
+    reader:learn(line:match("^%s*" .. ("%S+%s+"):rep(layout.label - 1) .. "(%S+)"), number)
+  end
 end
 
 --- Reads all atoms in bulk. Calls atom(label, x, y, z, radius, ...) for the first atom, and for those whose line has
@@ -115,7 +123,7 @@ function frame:bulk(names, size, atom, rows)
     if label == nil then return false end
     local number = atom(label, ...)
     if not number or not reader then return true end
-    if self.layout.label then reader:learn(word_of(self), number) end
+    learn(self, reader, number)
     local most = self.expected and self.expected - self.done or math.maxinteger
     local count, left = self.source:rows(reader, most, take)
     self.done = self.done + count

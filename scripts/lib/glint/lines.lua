@@ -182,6 +182,7 @@ function source:rows(reader, most, rows)
   local function take(at, n, passed, refused, ...)
     is_refused = refused
     if n > 0 and rows(n, ...) == false then return true end
+    if n > 0 and self.note then self.note(self.block:sub(self.at, at - 1)) end
     self.at, self.number, total = at, self.number + passed, total + n
     self.ahead = refused and AHEAD or math.min(4 * self.ahead, BLOCK)
   end

@@ -61,7 +61,7 @@ local function pick(wanted)
     local found = {}
     for i, name in ipairs(wanted) do
       local text = line:sub(WHERE[name][1], WHERE[name][2]):match "^%s*(.-)%s*$"
-      found[i] = tonumber(text) or text
+      found[i] = lines.value(text)
     end
     return table.unpack(found, 1, #wanted)
   end
@@ -82,11 +82,38 @@ local function read_atom(source, fields, line)
     source:number_of(line:sub(39, 46), "y, columns 39-46,"), source:number_of(line:sub(47, 54), "z, columns 47-54,")
 end
 
+-- For rows read in bulk: the record, the name with the code of an alternate location, and the element. Such rows have
+-- no alternate locations.
+local LAYOUT = { label = WHERE.element, x = { 31, 38 }, y = { 39, 46 }, z = { 47, 54 },
+  words = { { 1, 6 }, { 13, 17 } },
+  words_of = function(line)
+    local given = line:sub(77, 78)
+    if line:sub(17, 17) ~= " " or not elements.symbol(given:match "%a+" or "") then return {} end
+    return { line:sub(1, 6), line:sub(13, 17), given }
+  end }
+
+local function residue_of(line) return line:sub(22, 27) .. line:sub(73, 76) end
+
+-- Stores lines without alternate locations for is_first: those of the last residue, at least.
+local function note(fields, text)
+  local first, last = residue_of(text), residue_of(text:sub(-1000):match ".*\n([^\n]+)\n?$" or text)
+  fields.recent = first == last and first == fields.recent_place and fields.recent or {}
+  fields.recent[#fields.recent + 1], fields.recent_place = text, last
+end
+
 -- Returns whether to read an atom. Only the first of alternate locations is read, and of a residue with several kinds
 -- only the first kind. Only the current residue, and all atoms with alternate locations, are stored.
 local function is_first(fields, line)
   local name, alternate, kind = line:sub(13, 16), line:sub(17, 17), line:sub(18, 20)
-  local place = line:sub(22, 27) .. line:sub(73, 76)
+  local place, recent = residue_of(line), fields.recent
+  if recent and alternate == " " then
+    note(fields, line)
+    return true
+  end
+  fields.recent = nil
+  for _, text in ipairs(recent or {}) do
+    for other in text:gmatch "[^\n]+" do is_first(fields, other) end
+  end
   if fields.place ~= place then fields.place, fields.kind, fields.names = place, kind, {} end
   if alternate == " " then
     fields.names[name] = true
@@ -166,6 +193,8 @@ local function start(source, number, options)
   if not name then source:fail("an ATOM or HETATM record", nil) end
   local is_model = fields.is_model
   frames.name_columns(fields, COLUMNS, pick)
+  fields.places, fields.layout = WHERE, LAYOUT
+  source.note = function(text) note(fields, text) end
   return fields, function()
     while true do
       name, line = next_record(source)
