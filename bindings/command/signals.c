@@ -2,6 +2,7 @@
 // so that no file is left half written. The second ends the process at once.
 #include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bindings/command/cli.h"
 
@@ -22,23 +23,6 @@ static void leave(int number)
     raise(number);
 }
 
-static void stop(int number)
-{
-    glintL_run *run = caught_run;
-    lua_State *L = caught_state;
-    if (!run || run->interrupted) {
-        leave(number);
-        return;
-    }
-    run->interrupted = number;
-    if (run->renderer)
-        glint_renderer_cancel(run->renderer);
-    if (L) // lua_sethook may be called in a signal handler
-        lua_sethook(L, raise_interrupted, LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT, 1);
-}
-
-static void ignore(int number) { (void)number; }
-
 static void handle(int number, void (*handler)(int), int flags)
 {
     struct sigaction action;
@@ -48,6 +32,32 @@ static void handle(int number, void (*handler)(int), int flags)
     sigemptyset(&action.sa_mask);
     sigaction(number, &action, NULL);
 }
+
+// Interrupts a system call that began after the signal, once a second.
+static void nudge(int number)
+{
+    (void)number;
+    alarm(1);
+}
+
+static void stop(int number)
+{
+    glintL_run *run = caught_run;
+    lua_State *L = caught_state;
+    if (!run || run->interrupted) {
+        leave(number);
+        return;
+    }
+    run->interrupted = number;
+    handle(SIGALRM, nudge, 0);
+    alarm(1);
+    if (run->renderer)
+        glint_renderer_cancel(run->renderer);
+    if (L) // lua_sethook may be called in a signal handler
+        lua_sethook(L, raise_interrupted, LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT, 1);
+}
+
+static void ignore(int number) { (void)number; }
 
 // Installs the handler. SIGHUP stays ignored if it was ignored before, as under nohup. The signals interrupt system calls:
 // the script may wait for a pipe that nobody opens.
@@ -67,7 +77,7 @@ static void handle_all(void (*handler)(int))
 
 void cli_restart_calls(bool restarts)
 {
-    static const int numbers[] = { SIGINT, SIGTERM, SIGHUP };
+    static const int numbers[] = { SIGINT, SIGTERM, SIGHUP, SIGALRM };
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         struct sigaction action;
         sigaction(numbers[i], NULL, &action);

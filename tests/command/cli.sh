@@ -802,6 +802,12 @@ signals() {
     exec 9<>waits
     echo 'while true do io.open("waits"):read(1) end' >reading.lua
     signalled "SIGTERM while reading a pipe" TERM 143 reading.lua
+    "$GLINT" - -o none <waits >out 2>err &
+    local waiting=$!
+    sleep 0.5
+    kill -s TERM $waiting
+    wait $waiting
+    check "SIGTERM while reading a script" test $? -eq 143
     exec 9>&-
     echo 'while true do io.open "waits" end' >waiting.lua
     signalled "SIGTERM while waiting for a pipe" TERM 143 waiting.lua
