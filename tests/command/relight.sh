@@ -155,7 +155,7 @@ wrong "a negative strength" "finite strength >= 0" a.exr --light key=-1 -o wrong
 wrong "no colour" "such as #ffd9a0" a.exr --light key=redd -o wrong.png
 wrong "twice" "once" a.exr --light key=1 --light key=2 -o wrong.png
 wrong "no output" "-o with a picture, a film or a page" a.exr
-wrong "no file" "cannot be read" none.exr -o wrong.png
+wrong "no file" "none.exr: No such file or directory" none.exr -o wrong.png
 wrong "no files" "expected finished pictures" -o wrong.png
 wrong "no OpenEXR file" "OpenEXR file expected" plain.png -o wrong.png
 exits 0 "a file without passes" scene.lua -q -o beauty.exr
