@@ -101,26 +101,13 @@ static bool read_decimal(const char *text, const char *end, decimal *d)
 #ifdef __SIZEOF_INT128__
 __extension__ typedef unsigned __int128 wide;
 
-static const uint64_t POWERS[DIGITS_MAX + 1] = { 1u,
-                                                 10u,
-                                                 100u,
-                                                 1000u,
-                                                 10000u,
-                                                 100000u,
-                                                 1000000u,
-                                                 10000000u,
-                                                 100000000u,
-                                                 1000000000u,
-                                                 10000000000u,
-                                                 100000000000u,
-                                                 1000000000000u,
-                                                 10000000000000u,
-                                                 100000000000000u,
-                                                 1000000000000000u,
-                                                 10000000000000000u,
-                                                 100000000000000000u,
-                                                 1000000000000000000u,
-                                                 10000000000000000000u };
+// clang-format off: one line each for so many numbers would be long
+static const uint64_t POWERS[DIGITS_MAX + 1] = {
+    1u, 10u, 100u, 1000u, 10000u, 100000u, 1000000u, 10000000u, 100000000u, 1000000000u, 10000000000u, 100000000000u,
+    1000000000000u, 10000000000000u, 100000000000000u, 1000000000000000u, 10000000000000000u, 100000000000000000u,
+    1000000000000000000u, 10000000000000000000u,
+};
+// clang-format on
 
 /// Rounds an integer > 0 to the nearest double, ties to even. inexact: a fraction follows the integer.
 static double round_wide(wide value, bool inexact, int scale)
