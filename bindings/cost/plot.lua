@@ -81,9 +81,11 @@ function the.plot(study)
       .. "light</text>\n", (TOP + HEIGHT - BOTTOM) // 2)
     local floor = 3 * (study.reference and study.reference.rmse or 0)
     if floor > 0 and log(floor, 10) > error.low and log(floor, 10) < error.high then
-      take(LEFT + 6, y_of(floor), 230, 17)
+      local y = y_of(floor)
+      local top = y + 17 < HEIGHT - BOTTOM and y or y - 19 -- the label is above the line if it does not fit below
+      take(LEFT + 6, top, 230, 17)
       put("<path class='floor' d='M%d %.1fH%d'/><text class='tick' x='%d' y='%.1f'>below: not resolved by the "
-        .. "reference</text>\n", LEFT, y_of(floor), WIDTH - RIGHT, LEFT + 6, y_of(floor) + 14)
+        .. "reference</text>\n", LEFT, y, WIDTH - RIGHT, LEFT + 6, top + 14)
     end
   end
 

@@ -8,6 +8,7 @@ local RUN_MS <const>, RUN_QUICK_MS <const> = 30.0, 5.0 -- short frames are repea
 local ALLOWANCE_MS <const>, ALLOWANCE_QUICK_MS <const> = 45e3, 5e3 -- time for the reference without a budget
 local BUDGET_SHARE <const> = 0.3 -- share of a budget for the reference
 local BASE_FRAMES <const> = 3 -- frames: one that is dropped, one that counts the work, one that is timed
+local DECIDING_SHARE <const> = 0.6 -- time to decide without a budget, relative to that of the timed runs
 local LONG_MS <const> = 120e3 -- a longer study is announced
 local PAGE_MAX <const> = 12000000 -- bytes of pictures embedded in the page
 the.RUNS_LEAST = 3 -- quartiles of fewer runs mean nothing
@@ -175,7 +176,7 @@ local function run_study(study)
   the.time_cases(study)
   if study.reference then
     the.decide(study, study.deadline_ms < math.huge and study.deadline_ms
-      or the.tools.now() + study.runs * the.round_ms(study))
+      or the.tools.now() + DECIDING_SHARE * study.runs * the.round_ms(study))
   end
 end
 
