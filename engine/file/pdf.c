@@ -20,7 +20,8 @@
 typedef struct pdf {
     cairo_t *cairo;
     const glint_figure *figure;
-    cairo_surface_t *colors, *mask; ///< pixels; the page reads them when it is finished
+    cairo_surface_t *colors, *mask; ///< pixels
+    cairo_surface_t *holders[2]; ///< see hold_copy
     cairo_font_face_t *face; ///< font of all texts; NULL: no text so far
     bool lost; ///< out of memory outside of cairo
 } pdf;
@@ -62,30 +63,24 @@ static void copy_rows(pdf *p, cairo_surface_t *colors, cairo_surface_t *mask)
         cairo_surface_mark_dirty(mask);
 }
 
-static cairo_surface_t *acquire(cairo_pattern_t *pattern, void *pixels, cairo_surface_t *target,
-                                const cairo_rectangle_int_t *part)
+/// Returns a recording that shows pixels, and therefore holds the copy that cairo makes when the pixels are destroyed.
+static cairo_surface_t *hold_copy(cairo_surface_t *pixels)
 {
-    (void)pattern, (void)target, (void)part;
-    return cairo_surface_reference(pixels);
+    cairo_surface_t *holder = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_t *cairo = cairo_create(holder);
+    cairo_set_source_surface(cairo, pixels, 0, 0);
+    cairo_paint(cairo);
+    cairo_destroy(cairo);
+    return holder;
 }
 
-static void let_go(cairo_pattern_t *pattern, void *pixels, cairo_surface_t *acquired)
+/// Destroys pixels. cairo 1.16 crashes when it destroys a copy for which it had no memory, so such a copy is kept.
+static void destroy_pixels(cairo_surface_t *pixels, cairo_surface_t *holder)
 {
-    (void)pattern, (void)pixels;
-    cairo_surface_destroy(acquired);
-}
-
-/// Returns the pixels as a pattern at the picture's place. cairo 1.16 would copy a surface when it is destroyed, and
-/// crash if it has no memory for that.
-static cairo_pattern_t *pattern_of(const pdf *p, cairo_surface_t *pixels, cairo_content_t content)
-{
-    cairo_matrix_t place;
-    cairo_pattern_t *pattern =
-        cairo_pattern_create_raster_source(pixels, content, p->figure->source->width, p->figure->source->height);
-    cairo_matrix_init_translate(&place, -p->figure->x, -p->figure->y);
-    cairo_pattern_set_matrix(pattern, &place);
-    cairo_raster_source_pattern_set_acquire(pattern, acquire, let_go);
-    return pattern;
+    errno = 0;
+    cairo_surface_destroy(pixels);
+    if (errno != ENOMEM)
+        cairo_surface_destroy(holder);
 }
 
 /// Draws the picture. Its alpha is a mask, because cairo's pixels with alpha are products and would lose bits of the
@@ -101,17 +96,14 @@ static void draw_picture(pdf *p)
     p->mask = mask;
     if (p->lost)
         return;
-    cairo_pattern_t *color = pattern_of(p, colors, CAIRO_CONTENT_COLOR);
-    cairo_pattern_set_filter(color, CAIRO_FILTER_NEAREST); // readers show the pixel values
-    cairo_set_source(p->cairo, color);
-    cairo_pattern_destroy(color);
-    if (mask) {
-        cairo_pattern_t *alpha = pattern_of(p, mask, CAIRO_CONTENT_ALPHA);
-        cairo_mask(p->cairo, alpha);
-        cairo_pattern_destroy(alpha);
-    } else {
+    p->holders[0] = hold_copy(colors);
+    p->holders[1] = mask ? hold_copy(mask) : NULL;
+    cairo_set_source_surface(p->cairo, colors, p->figure->x, p->figure->y);
+    cairo_pattern_set_filter(cairo_get_source(p->cairo), CAIRO_FILTER_NEAREST); // readers show the pixel values
+    if (mask)
+        cairo_mask_surface(p->cairo, mask, p->figure->x, p->figure->y);
+    else
         cairo_paint(p->cairo);
-    }
 }
 
 // ---- Marks --------------------------------------------------------------------------------------------------------
@@ -363,8 +355,8 @@ glint_status glint_pdf_encode(const glint_figure *figure, const glint_png_desc *
     cairo_font_face_destroy(p.face);
     cairo_destroy(p.cairo);
     cairo_surface_destroy(surface);
-    cairo_surface_destroy(p.colors);
-    cairo_surface_destroy(p.mask);
+    destroy_pixels(p.colors, p.holders[0]);
+    destroy_pixels(p.mask, p.holders[1]);
     return status;
 }
 
