@@ -77,9 +77,13 @@ static void read_data(lua_State *L, arguments *a)
     if (array && (array->is_whole || (array->width != 1 && array->width != a->numbers)))
         glintL_error(L, "%s: array of %d numbers a row (%s) expected, got %I %s", path, (int)a->numbers, a->names,
                      (LUAI_UACINT)array->width, array->is_whole ? "integers" : "numbers");
-    if (a->format)
-        array = glintL_take_packed(L, DATA, a->format == FORMAT_F32 ? 'f' : 'd');
-    else if (!array)
+    if (a->format) { // the engine reads packed numbers without another copy
+        a->desc.data = lua_tostring(L, DATA);
+        a->desc.count = bytes / record;
+        a->desc.is_float = a->format == FORMAT_F32;
+        return;
+    }
+    if (!array)
         array = glintL_take_list(L, DATA, &(glintL_numbers) { .path = path }, glintL_check_list(L, DATA, path, false));
     const size_t count = array->count * array->width;
     if (count % a->numbers != 0 || count == 0 || count / a->numbers > ITEMS_MAX)
