@@ -169,6 +169,35 @@ local function is_ramp(path, factor, what)
   end
 end
 
+-- A sun in a rough mirror, seen from above: D G2 / 4 times the sun's irradiance, with GGX's distribution D and Smith's
+-- height-correlated G2. Few rays suffice, because they are drawn by the sky where the mirror shows the sun.
+function tests.a_sun_in_rough_mirrors()
+  for _, case in ipairs { { 0.25, 0 }, { 0.25, 0.4 }, { 0.5, 0 }, { 0.5, 0.9 }, { 0.9, 1.2 } } do
+    local roughness, turn = table.unpack(case)
+    local alpha, radius, bright = roughness ^ 2, 0.02, 1e4
+    local cosine, half = math.cos(turn), math.cos(turn / 2)
+    local d = alpha ^ 2 / (math.pi * (half ^ 2 * (alpha ^ 2 - 1) + 1) ^ 2)
+    local g2 = 2 / (1 + math.sqrt(1 + alpha ^ 2 * (1 / cosine ^ 2 - 1)))
+    local want = d * g2 / 4 * math.pi * math.sin(radius) ^ 2 * bright
+    local image = glint.scene {
+      camera = glint.camera { eye = { 0, 9, 0 }, at = { 0, 0, 0 }, up = { 0, 0, -1 }, projection = "orthographic", height = 1 },
+      background = disk(at_height(math.pi / 2 - turn), radius, bright), reflection_samples = 16,
+      glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0, mirror = 1, roughness = roughness } },
+    }:render { width = 32, height = 24, output = "none", passes = "beauty,mirror" }
+    local sum, square, count = 0, 0, image.width * image.height
+    for y = 0, image.height - 1 do
+      for x = 0, image.width - 1 do
+        local value = image:pixel(x, y, "mirror")
+        sum, square = sum + value, square + value * value
+      end
+    end
+    local mean = sum / count
+    local deviation = math.sqrt(math.max(square / count - mean * mean, 0)) / mean
+    near(mean, want, 0.05 * want, ("roughness %g, the sun %g from the zenith"):format(roughness, turn))
+    check(deviation < 0.25, "roughness %g, the sun %g from the zenith: relative noise %g", roughness, turn, deviation)
+  end
+end
+
 function tests.radiance_pictures()
   local function plain(i, k) return i, k end
   is_ramp(write(".hdr", HEAD .. "\n-Y 4 +X 8\n" .. flat(4, 8, plain)), 1, "flat")

@@ -292,7 +292,7 @@ static void draw_next(struct glint_indirect *indirect, const glint_ray *next, ui
 }
 
 /// Continues the paths that rough surfaces reflect or refract.
-static void spread(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_rays *next)
+static void spread(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, glint_rays *next)
 {
     glint_batch *batch = &indirect->batch;
     const void *const up[] = { indirect->up[0], indirect->up[1], indirect->up[2] };
@@ -303,7 +303,7 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
     for (uint32_t g = 0; g < batch->tile.group_count; g++)
         for (unsigned bits = indirect->spread[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            double disk[2], square[2];
+            double disk[2], cube[3], lot[2];
             glint_ray ray;
             if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
                 const double alpha = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer)->alpha;
@@ -316,8 +316,11 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
                 ray.weight[c] = next->weight[c][i];
             for (int c = 0; c < 2; c++)
                 disk[c] = glint_real_at(indirect->direction[c], frame->plan->desc.precision, i);
-            glint_indirect_square(&indirect->next_draws, i, 0, square);
-            glint_rough_leave(batch, &batch->tile, frame, i, disk, square, (glint_branch)indirect->branch[i], &ray);
+            glint_indirect_square(&indirect->next_draws, i, 0, cube);
+            if (frame->plan->sky) // choose_branch takes the first of them
+                glint_indirect_draw(indirect, ray.point, number, next_seed(batch->rays, batch->ray_of[i]) + 1, lot);
+            cube[2] = frame->plan->sky ? lot[1] : 0;
+            glint_rough_leave(batch, &batch->tile, frame, i, disk, cube, (glint_branch)indirect->branch[i], &ray);
             glint_rays_put(next, frame->plan, i, &ray);
         }
     spread_plain(indirect, frame, plain, next);
@@ -367,7 +370,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
         return false;
     scatter(indirect, frame, rays);
     if (frame->plan->rough_samples)
-        spread(indirect, frame, rays);
+        spread(indirect, frame, number, rays);
     batch->rays = rays;
     return true;
 }

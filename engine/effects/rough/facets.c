@@ -6,9 +6,9 @@
 /// is in its way: G2 / G1 with Smith's height-correlated G2 for reflection, and G1 of the new direction for
 /// refraction (B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 ///
-/// Under a sky with bright parts, some reflected rays are drawn by the sky's table (effects/environment/sky.h) instead,
-/// more of them from rougher surfaces. The weight of every ray is then divided by the mean of both densities, relative
-/// to that of the facets (the balance heuristic, as in effects/indirect/sky.c).
+/// Under a sky with bright parts, a reflected ray is drawn by the sky's table (effects/environment/sky.h) or by the facets,
+/// whichever is likely to bring more light: nearly always by the sky where the surface mirrors a sun, and rarely
+/// elsewhere. Both directions are weighed by the balance heuristic, as in effects/indirect/sky.c.
 ///
 /// Facets of Beckmann's distribution are drawn from GGX too, and weighted by the quotient of the two distributions,
 /// exp(-x) (1 + x)^2 with x = tan^2 / alpha^2, which is at most 4/e.
@@ -131,47 +131,72 @@ static double reflectance(const glint_bounce_material *m, int c, double cosine, 
 
 // ---- Under a bright sky ----
 
-/// Returns the share of a surface's reflected rays that are drawn by the sky.
-static double sky_share(double alpha) { return 0.5 * fmin(4 * alpha, 1); }
-
-/// Draws a direction by the sky, and finds the facet that reflects the ray there. Returns whether there is one.
-static bool draw_by_sky(const view *v, const glint_sky *sky, const double square[2], double facet[3])
+/// Draws a direction by the sky, and finds the facet that reflects the ray there. Returns x as draw_facet does; a
+/// negative number: no facet reflects the ray there.
+static double draw_by_sky(const view *v, const glint_sky *sky, const double square[2], double facet[3], double direction[3])
 {
-    double direction[3], out[3];
+    double out[3];
     glint_sky_draw(sky, square, direction);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(v->axis[k], direction);
         facet[k] = v->to_eye[k] + out[k];
     }
     if (!(out[2] > 0) || !(facet[2] > 0))
-        return false;
+        return -1;
     vec_normalize(facet, facet);
-    return true;
+    const double slope = sqrt(facet[0] * facet[0] + facet[1] * facet[1]) / (v->alpha * facet[2]);
+    return slope * slope;
 }
 
-/// Draws a facet by the sky or by the ray. Returns its tan^2 / alpha^2; a negative number: none reflects the ray.
-static double draw_either(const view *v, const glint_sky *sky, const double square[2], double facet[3])
+/// Returns the density of the rays that draw_facet reflects at a facet, per steradian; may be infinite.
+static double facet_density(const view *v, double x, const double facet[3])
 {
-    const double share = sky_share(v->alpha), u = square[0];
-    if (u < share) {
-        const double stretched[2] = { u / share, square[1] };
-        if (!draw_by_sky(v, sky, stretched, facet))
-            return -1;
-        const double slope = sqrt(facet[0] * facet[0] + facet[1] * facet[1]) / (v->alpha * facet[2]);
-        return slope * slope;
-    }
-    const double r = sqrt((u - share) / (1 - share)), turn = 2 * PI * square[1];
-    const double disk[2] = { r * glint_cos(turn), r * glint_sin(turn) };
-    return draw_facet(v, disk, facet);
-}
-
-/// Returns the density of the facets in a direction that they reflect, relative to that of all its rays.
-static double balance(const view *v, const glint_sky *sky, double x, const double facet[3], const double direction[3])
-{
-    const double share = sky_share(v->alpha), c = facet[2] * facet[2];
+    const double c = facet[2] * facet[2];
     const double d = 1 / (PI * (v->alpha * v->alpha) * (c * c) * ((1 + x) * (1 + x)));
-    const double density = d / (2 * (v->to_eye[2] + stretched(v->alpha, v->to_eye[2])));
-    return density < HUGE_VAL ? density / (share * glint_sky_density(sky, direction) + (1 - share) * density) : 1 / (1 - share);
+    return d / (2 * (v->to_eye[2] + stretched(v->alpha, v->to_eye[2])));
+}
+
+/// Returns the probability of a direction drawn by the sky against one drawn by facets, given both densities there:
+/// by the light that either is expected to bring. A direction of the sky brings the sky's total light, if facets reflect
+/// it; one of the facets brings the mean light of all directions.
+static double sky_chance(double facets, double sky)
+{
+    const double light = facets < HUGE_VAL ? facets * sky / (facets + sky) : sky;
+    return light / (light + 1 / (4 * PI));
+}
+
+/// Returns the density of the facets relative to that of both, drawn with these chances (the balance heuristic).
+static double balance(double facets, double sky, double chance)
+{
+    return facets < HUGE_VAL ? facets / (chance * sky + (1 - chance) * facets) : 1 / (1 - chance);
+}
+
+/// Draws a facet by the sky or by the ray. *share: the factor of its ray's weight. Returns x as draw_by_sky does.
+///
+/// Both are drawn from the same point. The chance of the sky depends on the direction that it draws, so the weights of both
+/// use the chance at their own direction.
+static double draw_either(const view *v, const glint_sky *sky, const double cube[3], const double disk[2], double facet[3],
+                          double *share)
+{
+    double direction[3], chance = 0;
+    const double x = draw_by_sky(v, sky, cube, facet, direction);
+    if (x >= 0) {
+        const double facets = facet_density(v, x, facet), density = glint_sky_density(sky, direction);
+        chance = sky_chance(facets, density);
+        *share = balance(facets, density, chance);
+    }
+    if (cube[2] < chance)
+        return x;
+    const double own = draw_facet(v, disk, facet), cosine = vec_dot(v->to_eye, facet);
+    for (int c = 0; c < 3; c++) {
+        direction[c] = 0;
+        for (int k = 0; k < 3; k++)
+            direction[c] += (2 * cosine * facet[k] - v->to_eye[k]) * v->axis[k][c];
+    }
+    vec_normalize(direction, direction);
+    const double facets = facet_density(v, own, facet), density = glint_sky_density(sky, direction), other = sky_chance(facets, density);
+    *share = balance(facets, density, other) * ((1 - other) / (1 - chance));
+    return own;
 }
 
 // ---- Rays ----
@@ -207,15 +232,15 @@ static void weigh(const glint_bounce_material *m, glint_branch branch, double co
 }
 
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], const double *square, glint_branch branch, glint_ray *ray)
+                       const double disk[2], const double *cube, glint_branch branch, glint_ray *ray)
 {
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const view v = look(tile, frame->plan, i, m);
     const double ratio = glint_batch_ratio(batch, tile, frame, i);
-    double facet[3], out[3];
+    double facet[3], out[3], share = 1;
     const glint_sky *sky = branch == GLINT_BRANCH_MIRRORED ? frame->plan->sky : NULL;
-    const double x = sky ? draw_either(&v, sky, square, facet) : draw_facet(&v, disk, facet);
+    const double x = sky ? draw_either(&v, sky, cube, disk, facet, &share) : draw_facet(&v, disk, facet);
     const double cosine = fmin(vec_dot(v.to_eye, facet), 1);
     const double s = branch == GLINT_BRANCH_REFRACTED ? refracted_cosine(cosine, ratio) : -1;
     const bool through = s >= 0;
@@ -228,7 +253,7 @@ void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const g
     vec_scale(out, ray->direction, through ? -1 : 1);
     const bool leaves = along > 0 && glint_tile_leaves(tile, frame->plan, i, out);
     const double factor = leaves && x >= 0 ? unmasked(&v, x, along, through) : 0;
-    weigh(m, branch, cosine, ratio, sky && factor > 0 ? factor * balance(&v, sky, x, facet, ray->direction) : factor, ray->weight);
+    weigh(m, branch, cosine, ratio, factor * share, ray->weight);
     ray->depth++;
     ray->inward = glint_has_lane(tile->hit.back, i) != through;
     ray->sight = false;

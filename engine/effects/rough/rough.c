@@ -141,7 +141,7 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     const glint_batch *batch = from ? from : &paths->batch;
     glint_branch branch;
     const double chance = draw_branch(rough, batch, seen, i, number, disk, &branch);
-    double square[2];
+    double cube[3], lot[2];
     glint_ray ray;
     glint_batch_start_ray(batch, seen, &rough->frame, i, &ray);
     if (!from)
@@ -150,8 +150,11 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     ray.least = paths->first.least[i];
     for (int c = 0; c < 3; c++)
         ray.weight[c] = glint_weight(paths->weight[c][i] / chance);
-    glint_indirect_square(&paths->first_draws, i, path, square);
-    glint_rough_leave(batch, seen, &rough->frame, i, disk, square, branch, &ray);
+    glint_indirect_square(&paths->first_draws, i, path, cube);
+    if (rough->plan.sky)
+        glint_indirect_draw(paths, i, number, 1, lot); // draw_branch takes the first of them
+    cube[2] = rough->plan.sky ? lot[1] : 0;
+    glint_rough_leave(batch, seen, &rough->frame, i, disk, cube, branch, &ray);
     glint_rays_put(&paths->first, &rough->plan, i, &ray);
 }
 

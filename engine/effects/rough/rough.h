@@ -27,9 +27,9 @@ static inline double glint_schlick(const glint_bounce_material *m, int c, double
 
 /// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
 /// direction, side, depth, media; multiplies the weight. The weight is 0 where the drawn facet sends the ray through the
-/// surface. disk: a point of the unit disk, where equal areas are equally likely. square: the point of the unit square
-/// that it belongs to; only read under a sky with bright parts.
+/// surface. disk: a point of the unit disk, where equal areas are equally likely. cube: the point of the unit square that
+/// it belongs to, and a third number in 0 .. 1; only read under a sky with bright parts.
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], const double *square, glint_branch branch, glint_ray *ray);
+                       const double disk[2], const double *cube, glint_branch branch, glint_ray *ray);
 
 #endif
