@@ -657,7 +657,8 @@ typedef enum glint_pass {
     GLINT_PASS_OUTLINE, ///< one channel: 1 at silhouettes, at borders between objects and at edges of objects, else
         ///< 0; at the pixel's centre
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; without `adaptive` 1 everywhere
-    GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; at the pixel's centre
+    GLINT_PASS_ALBEDO, ///< diffuse reflectance plus what is mirrored and transmitted at normal incidence, at most 1; 0
+        ///< where nothing is hit; at the pixel's centre
     GLINT_PASS_COUNT, ///< number of passes
     /// The first derivative of the frame, see glint_render_desc; the others follow it. Three channels
     GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT,
