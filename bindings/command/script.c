@@ -177,8 +177,10 @@ static int load_script(lua_State *L, const char *path)
         lua_pushfstring(L, "%s: a script expected, got a %s", path, other);
     else if (!is_input && is_picture(path))
         lua_pushfstring(L, "%s: a script expected, got a PNG (glint reproduce %s renders it again)", path, path);
-    else
-        return luaL_loadfilex(L, is_input ? NULL : path, "t");
+    else if (luaL_loadfilex(L, is_input ? NULL : path, "t") == LUA_OK)
+        return LUA_OK;
+    else if (strncmp(lua_tostring(L, -1), "attempt to load", 15) == 0) // the only message without the file's name
+        lua_pushfstring(L, "%s: a script expected, got compiled Lua", is_input ? "stdin" : path);
     return LUA_ERRFILE;
 }
 
@@ -216,7 +218,7 @@ static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH
 {
     char path[GLINTL_PATH_SIZE];
     const char *word = options->script;
-    if (options->untrusted_s > 0 || access(word, F_OK) == 0 || errno != ENOENT || strlen(word) > sizeof path - 5)
+    if (options->untrusted_s > 0 || strcmp(word, "-") == 0 || access(word, F_OK) == 0 || errno != ENOENT || strlen(word) > sizeof path - 5)
         return "";
     snprintf(path, sizeof path, "%s.lua", word);
     if (access(path, F_OK) == 0)

@@ -338,7 +338,7 @@ static void warn_bright(const glint_mesh_library *library, const glint_mesh_read
 {
     char more[32];
     if (library->bright)
-        glint_mesh_warn(reader->desc, reader->text.path, "material %s%s: numbers 0 .. 1 expected; a colour of bytes is divided by 255",
+        glint_mesh_warn(reader->desc, reader->text.path, "material %s%s: numbers 0 .. 1 expected; divide a colour of bytes by 255",
                         library->first_bright, spell_more(library->bright, more));
 }
 

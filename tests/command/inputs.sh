@@ -113,6 +113,11 @@ for bad in pipe folder /dev/zero huge.xyz; do
     done
 done
 refused "a picture for a script" "good.png: a script expected, got a PNG .glint reproduce good.png renders it again" good.png
+printf '\033Lua' >compiled.lua
+refused "compiled Lua for a script" "compiled.lua: a script expected, got compiled Lua$" compiled.lua
+echo 'x = = 1' | "$glint" - >out 2>err
+[ $? -eq 2 ] && grep -qx "glint: error: stdin:1: unexpected symbol near '='" err
+result $? "a wrong script on standard input"
 refused "reproduce with a pipe for a script" "pipe: a script expected, got a pipe" reproduce good.png pipe
 refused "fit.lua to a folder" "name ending in .png or .pfm expected, got .folder" "$root/scripts/fit.lua" -D file=folder -o none
 refused "fit.lua to another size" "fit: the target is [0-9]+ x [0-9]+, the picture 160 x 120" "$root/scripts/fit.lua" -D file=good.pfm -o none

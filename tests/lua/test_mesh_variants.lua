@@ -187,9 +187,9 @@ function tests.materials()
   check(is(material("newmtl a\nKd 1 0 0\nTr 1\n").transmission, 1, 1, 1), "Tr 1")
   warns("material 'a' cannot be seen: d 0, or Tr 1, lets all light through", path)
   check(is(material("newmtl a\nKd 255 0 0\n").diffuse, 255, 0, 0), "Kd 255 as it stands")
-  warns("material 'a' has Kd 255 0 0: numbers 0 .. 1 expected; a colour of bytes is divided by 255", path)
+  warns("material 'a' has Kd 255 0 0: numbers 0 .. 1 expected; divide a colour of bytes by 255", path)
   material "newmtl a\nKd 1 1 1\nKs 200 200 1.5\n"
-  warns("material 'a' has Ks 200 200 1.5: numbers 0 .. 1 expected; a colour of bytes is divided by 255", path)
+  warns("material 'a' has Ks 200 200 1.5: numbers 0 .. 1 expected; divide a colour of bytes by 255", path)
   local m = material "newmtl b\nNs -1\nnewmtl a\nKd 0.25 0.5 0.75\nKd 1 red 0\nNs 12\nKs spectral x.rfl\nd 2\nmap_Kd -clamp on\nNs 9\n"
   check(is(m.diffuse, 0.25, 0.5, 0.75) and m.shininess == 9 and is(m.specular, 0, 0, 0), "a bad line is one line")
   local mtl = folder .. "/t.mtl: "
