@@ -13,6 +13,7 @@
 #include "bindings/command/untrusted.h"
 #include "bindings/run/carried.h"
 #include "bindings/run/film.h"
+#include "engine/glint_compare.h"
 
 #define INSTRUCTIONS 1000 // instructions of the script between two checks of the clock
 #define REUSE_MEMORY ((size_t)256 << 20)
@@ -46,7 +47,6 @@ static web_job job;
 
 static const unsigned char PRELUDE[] = {
 #include "bindings/web/prelude.lua.h"
-#include "engine/glint_compare.h"
 };
 
 // ---- Parts of the command that are missing here ----
