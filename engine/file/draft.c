@@ -12,9 +12,11 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #define TEMPORARY_TRIES 100
+#define READER_TRIES 500
 #define TEMPORARY_EXTRA 160 // bytes that the temporary name adds to the file's name: host, process, number
 #define LINKS 40 // most links followed in a chain; the same limit as the system's
 #define PIECE ((size_t)1 << 20) // bytes of one write, so that the growing size of the file shows progress
@@ -58,6 +60,20 @@ static int open_again(const char *path, int flags, mode_t mode)
         file = open(path, flags, mode);
     while (file < 0 && errno == EINTR);
     return file;
+}
+
+/// Opens a pipe or a device for writing. Waits for a program that reads the pipe, READER_TRIES times 10 ms at most.
+static int open_in_place(const char *path)
+{
+    const struct timespec moment = { .tv_nsec = 10000000 };
+    for (int i = 0;; i++) {
+        const int file = open_again(path, O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, 0);
+        if (file >= 0)
+            fcntl(file, F_SETFL, 0); // from now on, writes wait for the reader
+        if (file >= 0 || errno != ENXIO || i == READER_TRIES)
+            return file;
+        nanosleep(&moment, NULL);
+    }
 }
 
 /// Makes all parent folders of `path`, which is changed and restored.
@@ -255,7 +271,7 @@ static int open_draft(glint_draft *draft)
     if (exists && S_ISDIR(info.st_mode))
         return EISDIR;
     if (exists && !S_ISREG(info.st_mode)) {
-        draft->file = open_again(path, O_WRONLY | O_CLOEXEC | O_NOCTTY, 0);
+        draft->file = open_in_place(path);
         return draft->file < 0 ? errno : 0;
     }
     if (exists && access(path, W_OK) != 0) // a rename does not check write permission
@@ -276,6 +292,8 @@ glint_status glint_draft_create(const char *path, glint_draft **out, glint_error
     int code = draft->path ? open_draft(draft) : ENOMEM;
     if (code) {
         glint_draft_destroy(draft);
+        if (code == ENXIO)
+            return glint_fail(error, GLINT_ERR_IO, "%s: no program reads this pipe", path);
         return glint_file_fail(error, path, code);
     }
     *out = draft;

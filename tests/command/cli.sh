@@ -730,6 +730,7 @@ whole() {
     exits 0 "a pipe" one.lua --size 40x24 -o pipe.png
     wait $!
     check "a pipe is written in place" test -p pipe.png -a -s piped.bin
+    exits 1 "a pipe without a reader" one.lua --size 40x24 -o pipe.png
     rm -f pipe.png
     if [ "$(id -u)" -ne 0 ]; then
         mkdir locked

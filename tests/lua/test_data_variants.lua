@@ -418,6 +418,7 @@ function tests.clouds()
     is(colored("w.pcd", kind .. "0 0 0 660510\n1 0 0 30\n"), "0 0 0 #0a141e; 1 0 0 #00001e", "dark ones of type " .. type)
   end
   is(colored("w.pcd", pcd:format("F", "ascii") .. "0 0 0 1.671168e+07\n1 0 0 65280.0\n"), RED_GREEN, "whole numbers with a point")
+  is(colored("w.pcd", pcd:format("F", "ascii") .. "0 0 0 4.2949017e+09\n1 0 0 4.2782554e+09\n"), RED_GREEN, "and alpha, in eight digits")
   is(colored("w.pcd", pcd:format("F", "binary") .. ("<ffffffff"):pack(0, 0, 0, 0xff0000, 1, 0, 0, 0xff00)), RED_GREEN, "binary whole numbers")
   is(colored("s.pcd", pcd:gsub("rgb", "r g b"):gsub("4 4 4 4", "4 4 4 4 4 4"):gsub("1 1 1 1", "1 1 1 1 1 1"):format("F F F", "ascii") ..
     "0 0 0 255 0 0\n1 0 0 0 255 0\n"), RED_GREEN, "three fields of whole numbers")

@@ -240,6 +240,7 @@ local function unpack_color(layout, place)
       list[n + 1], list[n + 2], list[n + 3] = code, code, code
       return
     end
+    if layout.codes[rgb] == "f" then code = ("<f"):unpack(("<f"):pack(code)) end -- the digits of a text may be few
     local whole = math.tointeger(code) -- as bits of a float, red, green and blue are below 4e-38
     code = whole and whole & 0xffffffff or is_float and ("<I4"):unpack(("<f"):pack(code)) or 0
     list[n + 1], list[n + 2], list[n + 3] = code >> 16 & 255, code >> 8 & 255, code & 255
