@@ -133,7 +133,7 @@ static glint_chart **keep(lua_State *L, int index)
 // Takes the label of series number `i`, which has none, from the labels of the constructor's table.
 static void read_own_label(lua_State *L, size_t i, series *out)
 {
-    char path[32];
+    char path[40];
     if (out->label[0] || !lua_istable(L, 1))
         return;
     lua_pushliteral(L, "labels");

@@ -2,6 +2,7 @@
 #include "engine/base/open.h"
 #include "engine/base/status.h"
 #include "engine/film/relight.h"
+#include "engine/glint_files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +10,6 @@
 
 #ifdef GLINT_HAVE_OPENEXR
 #include "engine/file/exr_chunks.h"
-#include "engine/glint_files.h"
 
 typedef struct exr_input {
     exr_context_t context;

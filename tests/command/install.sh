@@ -129,9 +129,9 @@ link_static() {
 check "the archive does as well" eval '(link_static)'
 nm -D --defined-only "$prefix/lib/libglint.so" | awk '$2 == "T" { sub(/@.*/, "", $3); print $3 }' | sort >"$work/exported"
 check "the shared library has all of the public headers" eval \
-    'for f in $(grep -ohE "\bglint_[a-z0-9_]+\(" engine/glint*.h | tr -d "(" | sort -u); do grep -qx "$f" "$work/exported" || exit 1; done'
+    '(for f in $(grep -ohE "\bglint_[a-z0-9_]+\(" engine/glint*.h | tr -d "(" | sort -u); do grep -qx "$f" "$work/exported" || exit 1; done)'
 check "and nothing else" eval 'test "$(wc -l <"$work/exported")" -gt 100 &&
-    for f in $(cat "$work/exported"); do grep -q "\b$f(" engine/glint*.h || exit 1; done'
+    (for f in $(cat "$work/exported"); do grep -q "\b$f(" engine/glint*.h || exit 1; done)'
 for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
     check "$file is stripped and hardened" eval \
         '! readelf -SW "$prefix/$file" | grep -q debug_info && readelf -dW "$prefix/$file" | grep -qE "BIND_NOW|NOW" &&
