@@ -254,7 +254,7 @@ glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *ou
     size_t at = FIRST_CHUNK;
     chunk c;
     if (!has_signature(data, size))
-        return glint_fail(error, GLINT_ERR_FORMAT, "not a picture that glint reads: it does not begin as one");
+        return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: it does not begin as one");
     while (next_chunk(data, size, &at, &c)) {
         if (!head.width && !read_ihdr(&c, &head))
             return refuse_ihdr(&c, error);

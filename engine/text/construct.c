@@ -346,6 +346,7 @@ static const struct {
     { "textrm", TEXT, -1, GLINT_LETTERS_UPRIGHT },
     { "mbox", TEXT, -1, GLINT_LETTERS_UPRIGHT },
     { "textbf", TEXT, -1, GLINT_LETTERS_BOLD },
+    { "textsf", TEXT, -1, GLINT_LETTERS_UPRIGHT },
     { "mathrm", LETTERS, -1, GLINT_LETTERS_UPRIGHT },
     { "mathsf", LETTERS, -1, GLINT_LETTERS_UPRIGHT },
     { "mathbf", LETTERS, -1, GLINT_LETTERS_BOLD },

@@ -154,7 +154,7 @@ static atom set_command(glint_setter *s, glint_style st)
     atom a = { GLINT_ATOM_SPACE, glint_box_begin(s) };
     s->at += 1 + size;
     a.box.width = space * glint_setter_em(s, st.level);
-    if (space != 0)
+    if (space != 0 || glint_symbol_is("displaystyle", at + 1, size)) // formulas are displayed already
         return a;
     if (symbol)
         return set_symbol(s, st, symbol);

@@ -195,6 +195,8 @@ static void test_lecture_notes(void **state)
     assert_true(line.runs[0].em == SCRIPT && line.runs[2].em == EM);
     assert_string_equal(pieces("$\\binom nk$"), "(|n|k|)");
     assert_true(line.rule_count == 0 && line.runs[0].stretch > 1.5 && line.runs[1].x == line.runs[2].x);
+    assert_string_equal(pieces("$\\displaystyle 2 \\textsf{a b}$"), "2|a b");
+    assert_true(line.runs[0].x == 0);
     set("$f'$");
     const double x = line.runs[1].x, width = line.width;
     set("$f^\\prime$");
