@@ -62,8 +62,8 @@ static int open_again(const char *path, int flags, mode_t mode)
     return file;
 }
 
-/// Opens a pipe or a device for writing. Waits for a program that reads the pipe, READER_TRIES times 10 ms at most.
-static int open_in_place(const char *path)
+/// Opens a pipe for writing. Waits for a program that reads it, READER_TRIES times 10 ms at most.
+static int open_pipe(const char *path)
 {
     const struct timespec moment = { .tv_nsec = 10000000 };
     for (int i = 0;; i++) {
@@ -271,7 +271,9 @@ static int open_draft(glint_draft *draft)
     if (exists && S_ISDIR(info.st_mode))
         return EISDIR;
     if (exists && !S_ISREG(info.st_mode)) {
-        draft->file = open_in_place(path);
+        draft->file = S_ISFIFO(info.st_mode) ? open_pipe(path) : open_again(path, O_WRONLY | O_CLOEXEC | O_NOCTTY, 0);
+        if (draft->file < 0 && errno == ENXIO && S_ISFIFO(info.st_mode))
+            return EPIPE;
         return draft->file < 0 ? errno : 0;
     }
     if (exists && access(path, W_OK) != 0) // a rename does not check write permission
@@ -292,7 +294,7 @@ glint_status glint_draft_create(const char *path, glint_draft **out, glint_error
     int code = draft->path ? open_draft(draft) : ENOMEM;
     if (code) {
         glint_draft_destroy(draft);
-        if (code == ENXIO)
+        if (code == EPIPE)
             return glint_fail(error, GLINT_ERR_IO, "%s: no program reads this pipe", path);
         return glint_file_fail(error, path, code);
     }

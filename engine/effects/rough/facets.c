@@ -161,14 +161,15 @@ static double facet_density(const view *v, double x, const double facet[3])
 /// it; one of the facets brings the mean light of all directions.
 static double sky_chance(double facets, double sky)
 {
-    const double light = facets < HUGE_VAL ? facets * sky / (facets + sky) : sky;
+    const double light = 1 / (1 / facets + 1 / sky); // both may be 0, the first infinite
     return light / (light + 1 / (4 * PI));
 }
 
 /// Returns the density of the facets relative to that of both, drawn with these chances (the balance heuristic).
 static double balance(double facets, double sky, double chance)
 {
-    return facets < HUGE_VAL ? facets / (chance * sky + (1 - chance) * facets) : 1 / (1 - chance);
+    const double both = chance * sky + (1 - chance) * facets;
+    return !(both > 0) ? 0 : both < HUGE_VAL ? facets / both : 1 / (1 - chance);
 }
 
 /// Draws a facet by the sky or by the ray. *share: the factor of its ray's weight. Returns x as draw_by_sky does.
