@@ -63,10 +63,10 @@ $(NPM)/worker.txt: $(WEB)/worker.mjs
 
 $(WEB)/glint.mjs: BUNDLE := --bundle --external:node:*
 $(WEB)/worker.mjs: BUNDLE :=
-$(WEB)/playground.js: BUNDLE := --bundle --external:./glint.mjs --external:./glint-figure.js
+$(addprefix $(WEB)/,glint-figure.js playground.js): BUNDLE := --bundle --external:./glint.mjs
 $(WEB)/publish.js: BUNDLE := --bundle --external:node:* --loader:.txt=text
 $(WEB)/publish.js: $(NPM)/worker.txt
-$(addprefix $(WEB)/,glint.mjs worker.mjs playground.js publish.js): $(WEB)/%: $(NPM)/sources
+$(addprefix $(WEB)/,glint.mjs worker.mjs glint-figure.js playground.js publish.js): $(WEB)/%: $(NPM)/sources
 	$(call say,BUNDLE)
 	$(Q)cd $(NPM) && node_modules/.bin/esbuild $* $(BUNDLE) --format=esm --minify --log-level=warning --outfile=$(CURDIR)/$@
 
@@ -79,7 +79,7 @@ $(WEB)/LICENSE: LICENSE
 $(WEB)/glint.wasm.gz: $(WEB)/glint.wasm
 	@gzip -9 -n <$< >$@
 
-$(addprefix $(WEB)/,glint-figure.js site.css index.html figure.html course.html): $(WEB)/%: bindings/web/pages/%
+$(addprefix $(WEB)/,site.css index.html figure.html course.html): $(WEB)/%: bindings/web/pages/%
 	@mkdir -p $(@D)
 	@cp $< $@
 

@@ -7,7 +7,8 @@ import { lua } from "@codemirror/legacy-modes/mode/lua"
 import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
 import { load } from "./glint.mjs"
-import { control, quality, Renderer, show } from "./glint-figure.js"
+import { control } from "./controls.js"
+import { quality, Renderer, show } from "./renderer.js"
 
 const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
