@@ -68,6 +68,24 @@ glint_status glint_image_to_bytes(const glint_image *image, const glint_write_de
 /// first, alpha 255 where the picture has none. Reads from `desc` the pass, the tone (8 bits), dpi and colormap.
 glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error);
 
+/// Returns the picture without its overlays, whose pixels it shares; the image itself if it has none. Borrowed.
+const glint_image *glint_image_without_overlays(const glint_image *image);
+
+/// A page that shows a picture at another size than its own.
+typedef struct glint_page {
+    int width, height; ///< size of the picture on the page, pixels of the page; 1 .. GLINT_SIDE_MAX
+    /// pixels of the page per pixel of the picture for which the script gives positions, > 0. Sizes in points, at the
+    /// picture's dpi, are scaled by it
+    double scale;
+    double dpi; ///< of the script's picture; 0: 72
+    double least; ///< smallest size of letters, pixels of the page, 0 .. 1000
+    glint_transfer transfer; ///< of the picture's values
+} glint_page;
+
+/// Returns the overlays of a picture as an SVG element for a page, with text in `text` elements. The parts of curves
+/// that surfaces hide are those found for the picture. The caller frees *svg; NULL: the picture has no overlays.
+glint_status glint_image_overlays_svg(const glint_image *image, const glint_page *page, char **svg, glint_error *error);
+
 /// Writes the key of a finished frame: 32 hex digits, a hash of the engine version, all data that the plan reads, the
 /// encoder version, and the fields tone, encode and pass of `desc`. Threads, instruction set, shard and path are not
 /// included.

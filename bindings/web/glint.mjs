@@ -176,8 +176,9 @@ class Job {
   }
   /**
    * Renders a frame. `set` overrides the values the job was opened with. `passes` are the passes whose numbers
-   * image.plane() returns; they take extra time. `view` is the pass that image.rgba shows, as in its .png. The other
-   * options are the fields of scene:render{}.
+   * image.plane() returns; they take extra time. `view` is the pass that image.rgba shows, as in its .png. With `layers`,
+   * { width, height, least }, image.rgba has no overlays: image.marks has them as an SVG element for a page that shows
+   * the picture at this size, with letters of at least `least` pixels. The other options are the fields of scene:render{}.
    */
   async render(options) { return new Image(await this.#ask("render", options)) }
 
@@ -197,10 +198,11 @@ class Job {
     } while (image.samples < image.ownSamples)
   }
 
-  #ask(call, { frame = 1, passes = [], view = "beauty", set, signal, ...options } = {}, more) {
+  #ask(call, { frame = 1, passes = [], view = "beauty", layers, set, signal, ...options } = {}, more) {
     const named = [passes].flat().flatMap(list => String(list).split(",")).filter(name => name !== "")
     const needed = view === "beauty" || named.includes(view) ? named : [...named, view]
-    const message = { call, frame, view, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options), ...more }
+    const on = layers && { least: 0, scale: layers.width / this.width, ...layers }
+    const message = { call, frame, view, layers: on, set: { ...this.#set, ...spellAll(set) }, passes: named, options: spellAll(options), ...more }
     if (needed.length) message.options.passes = needed.join(",")
     message.options.bits = "8" // a page shows no more
     return this.#host.ask(message, signal)

@@ -38,6 +38,7 @@ typedef struct web_job {
     double error; // estimate for the last picture; < 0: unknown
     bool is_doubtful; // the estimate is not to be trusted
     uint8_t *bytes; // result of the last request; owned
+    char *marks; // SVG of the last picture's overlays; owned
     char warnings[WARNINGS_SIZE]; // warnings of the last call, one per line
 } web_job;
 
@@ -453,9 +454,10 @@ static int find_pass(const char *name)
     return -1;
 }
 
-// Returns the 8-bit values of a pass of the last frame, as in its .png: RGBA, top row first.
-EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view)
+// Returns the 8-bit values of a pass of the last frame, as in its .png: RGBA, top row first. is_plain: without overlays.
+EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view, bool is_plain)
 {
+    const glint_image *image = is_plain ? glint_image_without_overlays(job.image) : job.image;
     glint_error error;
     const int pass = strcmp(view, "beauty") == 0 ? GLINT_PASS_BEAUTY : find_pass(view);
     glint_write_desc desc = { .pass = (glint_pass)pass, .tone = job.render.desc.tone, .dpi = job.render.dpi };
@@ -466,9 +468,25 @@ EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view)
     desc.tone.bits = 8; // a screen shows no more
     free(job.bytes);
     job.bytes = malloc(4 * (size_t)web_image_width() * (size_t)web_image_height());
-    if (job.bytes && glint_image_rgba(job.image, &desc, job.bytes, &error) == GLINT_OK)
+    if (job.bytes && glint_image_rgba(image, &desc, job.bytes, &error) == GLINT_OK)
         return job.bytes;
     glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "%s", job.bytes ? error.message : "out of memory");
+    return NULL;
+}
+
+/// Returns the overlays of the last frame as an SVG element, "" if it has none. width, height: size on the page, in its
+/// pixels. scale: pixels of the page per pixel of the script's own picture. least: smallest size of letters, pixels.
+EMSCRIPTEN_KEEPALIVE const char *web_marks(int width, int height, double scale, double least)
+{
+    glint_error error;
+    const glint_page page = {
+        .width = width, .height = height, .scale = scale, .dpi = job.render.dpi, .least = least, .transfer = job.render.desc.tone.transfer
+    };
+    free(job.marks);
+    job.marks = NULL;
+    if (glint_image_overlays_svg(job.image, &page, &job.marks, &error) == GLINT_OK)
+        return job.marks ? job.marks : "";
+    glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "%s", error.message);
     return NULL;
 }
 

@@ -113,7 +113,7 @@ const keyOf = ({ set, frame, options }) => JSON.stringify([set, frame, options, 
 
 // Renders a frame. With `after`, renders the step that follows a picture of that many samples.
 function render(message) {
-  const { set, frame, options, passes, view, after } = message
+  const { set, frame, options, passes, view, after, layers } = message
   run(set)
   choose(options)
   const own = after === undefined ? 0 : call("web_own_samples", frame), isStep = own > 1
@@ -121,11 +121,12 @@ function render(message) {
   check(call("web_render", frame, isStep || "passes" in options, isStep ? call("web_next_samples", frame, after) : 0))
   if (isStep && view === "beauty") shown = keyOf(message)
   const width = call("web_image_width"), height = call("web_image_height")
-  const at = check(call("web_rgba", view))
+  const at = check(call("web_rgba", view, layers ? 1 : 0))
   const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)
   const planes = Object.fromEntries(namePasses(passes).map(name => [name, plane(name)]))
+  const marks = layers && view === "beauty" ? engine.UTF8ToString(check(call("web_marks", layers.width, layers.height, layers.scale, layers.least))) : ""
   const samples = call("web_samples")
-  return { frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }
+  return { frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, marks, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }
 }
 
 // Returns the estimated error of a step. undefined: the frame has no steps, or the engine has rendered another picture

@@ -32,6 +32,10 @@ glint_status glint_figure_write(const glint_figure *figure, const char *path, co
 /// Appends an .svg: a page of the size of the figure's pixels. svg.c
 glint_status glint_svg_encode(const glint_figure *figure, const glint_png_desc *desc, glint_bytes *out,
                               glint_error *error);
+/// Appends an SVG element that has only the marks. svg.c
+/// box  the visible part of the page: x, y, width and height.
+glint_status glint_svg_encode_marks(const glint_ink *ink, const double box[4], glint_transfer transfer, glint_bytes *out,
+                                    glint_error *error);
 /// Appends a .pdf of one page, of 8-bit sRGB values. pdf.c
 glint_status glint_pdf_encode(const glint_figure *figure, const glint_png_desc *desc, glint_bytes *out,
                               glint_error *error);

@@ -17,7 +17,8 @@
 
 typedef struct svg {
     glint_bytes *out;
-    const glint_figure *figure;
+    const glint_ink *ink; ///< the marks
+    glint_transfer transfer; ///< of the colours' codes
     glint_rect clip; ///< clip rectangle of the open group
     int clips; ///< number of clip paths so far
     bool lost; ///< out of memory
@@ -73,7 +74,7 @@ static void put_color(svg *s, const char *name, const double color[3])
 {
     unsigned code = 0;
     for (int c = 0; c < 3; c++)
-        code = code << 8 | glint_ink_code(color[c], s->figure->source->tone.transfer, 8);
+        code = code << 8 | glint_ink_code(color[c], s->transfer, 8);
     put(s, " %s=\"#%06x\"", name, code);
 }
 
@@ -264,8 +265,7 @@ static void put_text(svg *s, const glint_ink_mark *mark)
 
 static bool is_page(const svg *s, const glint_rect *clip)
 {
-    const glint_ink *ink = s->figure->ink;
-    return clip->x == 0 && clip->y == 0 && clip->width == ink->width && clip->height == ink->height;
+    return clip->x == 0 && clip->y == 0 && clip->width == s->ink->width && clip->height == s->ink->height;
 }
 
 /// Ends the group of the last clip rectangle, and begins a group for another one.
@@ -287,7 +287,7 @@ static void put_clip(svg *s, const glint_rect *clip)
 static void put_marks(svg *s)
 {
     static void (*const puts_mark[])(svg *, const glint_ink_mark *) = { put_fill, put_text, put_strokes };
-    const glint_ink *ink = s->figure->ink;
+    const glint_ink *ink = s->ink;
     const glint_rect page = { 0, 0, ink->width, ink->height };
     s->clip = page;
     for (size_t i = 0; i < ink->count; i++) {
@@ -299,17 +299,16 @@ static void put_marks(svg *s)
 
 // ---- The file -----------------------------------------------------------------------------------------------------
 
-static void put_head(svg *s, const glint_png_desc *desc)
+static void put_head(svg *s, const glint_figure *figure, const glint_png_desc *desc)
 {
-    const glint_png_source *source = s->figure->source;
+    const glint_png_source *source = figure->source;
     const double unit = glint_figure_unit(desc);
     put_string(s, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
                   "xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"");
     put_number(s, source->width * unit);
     put_string(s, "pt\" height=\"");
     put_number(s, source->height * unit);
-    put(s, "pt\" viewBox=\"%d %d %d %d\" xml:space=\"preserve\">\n", s->figure->x, s->figure->y, source->width,
-        source->height);
+    put(s, "pt\" viewBox=\"%d %d %d %d\" xml:space=\"preserve\">\n", figure->x, figure->y, source->width, source->height);
 }
 
 glint_status glint_svg_encode(const glint_figure *figure, const glint_png_desc *desc, glint_bytes *out,
@@ -317,10 +316,10 @@ glint_status glint_svg_encode(const glint_figure *figure, const glint_png_desc *
 {
     const glint_png_source *source = figure->source;
     glint_bytes png = { 0 };
-    svg s = { .out = out, .figure = figure };
+    svg s = { .out = out, .ink = figure->ink, .transfer = source->tone.transfer };
     const glint_status status = glint_png_encode(NULL, source, desc, &png, NULL, error);
     if (!status) {
-        put_head(&s, desc);
+        put_head(&s, figure, desc);
         put(&s, "<image x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" xlink:href=\"data:image/png;base64,", figure->x,
             figure->y, source->width, source->height);
         put_base64(&s, png.data, png.size);
@@ -331,4 +330,19 @@ glint_status glint_svg_encode(const glint_figure *figure, const glint_png_desc *
     }
     free(png.data);
     return s.lost && !status ? glint_fail_nomem(error) : status;
+}
+
+glint_status glint_svg_encode_marks(const glint_ink *ink, const double box[4], glint_transfer transfer, glint_bytes *out,
+                                    glint_error *error)
+{
+    svg s = { .out = out, .ink = ink, .transfer = transfer };
+    put_string(&s, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"");
+    for (int i = 0; i < 4; i++) {
+        put_string(&s, i ? " " : "");
+        put_number(&s, box[i]);
+    }
+    put_string(&s, "\" preserveAspectRatio=\"none\" xml:space=\"preserve\">\n");
+    put_marks(&s);
+    put_string(&s, "</svg>\n");
+    return s.lost ? glint_fail_nomem(error) : GLINT_OK;
 }

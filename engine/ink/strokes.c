@@ -56,6 +56,23 @@ static double distance_from(const glint_strokes *strokes, size_t i, double x, do
     return distance_to(s->offset, x - s->from[0], y - s->from[1]) - strokes->half;
 }
 
+/// Computes the rows or columns of a stamp that shape number `i` can cover, as first and last + 1.
+/// c      0 for columns, 1 for rows.
+/// start  the stamp's first row or column.
+static void limit_pixels(const glint_strokes *strokes, size_t i, int c, int start, int size, int range[2])
+{
+    const glint_stroke *s = &strokes->of[i];
+    range[0] = 0;
+    range[1] = size;
+    if (i == strokes->count) // the corners of a thin head reach far beyond its points
+        return;
+    const double reach = strokes->half + 1, end = s->from[c] + s->offset[c];
+    const double low = (s->from[c] < end ? s->from[c] : end) - reach - start;
+    const double high = (s->from[c] < end ? end : s->from[c]) + reach - start;
+    range[0] = low > 0 ? low < size ? (int)low : size : 0;
+    range[1] = high < size ? high > 0 ? (int)high + 1 : 0 : size;
+}
+
 static void add_tile(glint_stamps *stamps, const glint_ink_mark *mark, int left, int top)
 {
     const glint_strokes *strokes = &mark->strokes;
@@ -66,8 +83,11 @@ static void add_tile(glint_stamps *stamps, const glint_ink_mark *mark, int left,
             continue;
         if (!stamp.coverage && !glint_stamps_mask(stamps, &mark->clip, left, top, TILE, TILE, &stamp))
             return;
-        for (int y = 0; y < stamp.height; y++)
-            for (int x = 0; x < stamp.width; x++) {
+        int across[2], down[2];
+        limit_pixels(strokes, i, 0, stamp.x, stamp.width, across);
+        limit_pixels(strokes, i, 1, stamp.y, stamp.height, down);
+        for (int y = down[0]; y < down[1]; y++)
+            for (int x = across[0]; x < across[1]; x++) {
                 const double d = distance_from(strokes, i, stamp.x + x + 0.5, stamp.y + y + 0.5);
                 const uint8_t covered = (uint8_t)(fmin(fmax(0.5 - d, 0), 1) * 255 + 0.5);
                 uint8_t *at = &stamp.coverage[(size_t)y * (size_t)stamp.width + (size_t)x];

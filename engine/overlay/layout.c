@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_SIZE 10.0 ///< smallest default font size; pixels
+#define LEAST_SIZE 10.0 ///< smallest default font size, unless the page has one; pixels
 #define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
@@ -49,7 +49,8 @@ glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_over
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_CHART] = 0 };
     glint_layout layout = { .overlays = overlays, .desc = desc, .dpi = dpi, .ink = ink };
-    layout.em = desc->has_size ? glint_layout_pixels(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
+    const double least = overlays->least > 0 ? overlays->least : desc->has_size ? 0 : LEAST_SIZE;
+    layout.em = fmax(desc->has_size ? glint_layout_pixels(desc->size, dpi) : overlays->height / SIZE_SHARE, least);
     layout.typeface = glint_typeface_open(ink->letters, layout.em);
     if (desc->kind != GLINT_OVERLAY_LABEL)
         layout.length = desc->has_length ? glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;

@@ -43,6 +43,7 @@ typedef struct glint_overlays {
     double view[3][3]; ///< unit vectors to the right, up and away from the eye
     glint_overlays_camera camera;
     glint_key letters; ///< see glint_letters_key
+    double least; ///< smallest size of letters, pixels; 0: 10 for letters without a given size
     glint_hidden_parts *hidden; ///< hidden parts of each overlay's curve; NULL: none are hidden, or they are not
         ///< known yet. Owned
     size_t count;
@@ -65,6 +66,11 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
                                  glint_overlays **out, glint_error *error);
 /// Returns a copy with `hidden` of `count` empty rows, to be filled in by the caller. NULL: out of memory.
 glint_overlays *glint_overlays_copy(const glint_overlays *overlays);
+/// Returns a copy for a page of another size, with the hidden parts. NULL: out of memory.
+/// factor  width and height of the page, in those of the picture.
+/// scale   factor of the positions of overlays, which are in pixels of the script's own picture.
+/// least   smallest size of letters, pixels.
+glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const double factor[2], double scale, double least);
 glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: no effect
 void glint_overlays_release(glint_overlays *overlays); ///< NULL: no effect
 /// Extends a key by everything that the overlays' pixels depend on, except the codes below them and the file's dpi.

@@ -45,6 +45,7 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
     overlays->width = width;
     overlays->height = height;
     overlays->letters = font;
+    overlays->least = 0;
     overlays->hidden = NULL;
     overlays->count = 0;
     for (int i = 0; i < 3; i++)
@@ -77,6 +78,43 @@ glint_overlays *glint_overlays_copy(const glint_overlays *overlays)
     for (size_t i = 0; i < copy->count; i++)
         glint_chart_retain(copy->of[i].chart);
     return copy;
+}
+
+/// Copies the hidden parts of curves. Returns false if out of memory.
+static bool copy_hidden(const glint_overlays *from, glint_overlays *to)
+{
+    for (size_t i = 0; from->hidden && i < from->count; i++) {
+        const size_t count = from->hidden[i].count, bytes = count * sizeof *from->hidden[i].of;
+        if (!count)
+            continue;
+        to->hidden[i].of = malloc(bytes);
+        if (!to->hidden[i].of)
+            return false;
+        memcpy(to->hidden[i].of, from->hidden[i].of, bytes);
+        to->hidden[i].count = count;
+    }
+    return true;
+}
+
+glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const double factor[2], double scale, double least)
+{
+    glint_overlays *page = glint_overlays_copy(overlays);
+    if (!page || !copy_hidden(overlays, page)) {
+        glint_overlays_release(page);
+        return NULL;
+    }
+    page->width = (int)ceil(overlays->width * factor[0] - 0.5);
+    page->height = (int)ceil(overlays->height * factor[1] - 0.5);
+    page->least = least;
+    for (int i = 0; i < 2; i++) {
+        vec_scale(page->camera.view[i], overlays->camera.view[i], 1 / factor[i]);
+        page->camera.span[i] = overlays->camera.span[i] * factor[i];
+    }
+    page->camera.pixel_offset = 0.5 - (0.5 - overlays->camera.pixel_offset) * factor[0];
+    for (size_t i = 0; i < page->count; i++)
+        for (int c = 0; c < 2; c++)
+            page->of[i].position[c] *= scale;
+    return page;
 }
 
 glint_overlays *glint_overlays_retain(glint_overlays *overlays)

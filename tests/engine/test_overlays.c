@@ -369,6 +369,70 @@ static void test_region(void **state)
     drop_world(&w);
 }
 
+/// Returns the overlays of a picture as SVG for a page of `factor` times its size.
+static char *svg_on_page(const glint_image *image, int factor, double least)
+{
+    const glint_page page = { .width = factor * WIDTH, .height = factor * HEIGHT, .scale = factor, .least = least };
+    glint_error error = { 0 };
+    char *svg = NULL;
+    if (glint_image_overlays_svg(image, &page, &svg, &error))
+        fail_msg("%s", error.message);
+    return svg;
+}
+
+/// Reads the ends of the line in an SVG.
+static void read_line(const char *svg, double ends[4])
+{
+    assert_int_equal(sscanf(strstr(svg, "d=\"M"), "d=\"M%lf %lfL%lf %lf", &ends[0], &ends[1], &ends[2], &ends[3]), 4);
+}
+
+/// On a page, the overlays are vectors of the page's size. The picture below them has no overlays.
+static void test_page(void **state)
+{
+    (void)state;
+    glint_overlay_desc line = glint_overlay_desc_default(GLINT_OVERLAY_LINE), label = label_at(21, 13, "K");
+    glint_error error = { 0 };
+    glint_overlay *other = NULL;
+    glint_plan *plan = NULL;
+    glint_image *image = NULL;
+    double once[4], twice[4];
+    static uint8_t rgba[4 * WIDTH * HEIGHT];
+    line.from[0] = -1;
+    line.to[0] = 1;
+    label.has_background = true;
+    world w = make_world(&line, 1);
+    assert_int_equal(glint_overlay_create(&label, &other, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_overlay(w.scene, other, NULL), GLINT_OK);
+    if (glint_plan_create(w.scene, &w.render, &plan, &error) || glint_render(w.renderer, plan, &image, NULL, &error))
+        fail_msg("%s", error.message);
+    char *small = svg_on_page(image, 1, 0), *large = svg_on_page(image, 2, 26), *none;
+    assert_non_null(strstr(small, "viewBox=\"0 0 160 120\""));
+    assert_non_null(strstr(large, "viewBox=\"0 0 320 240\""));
+    read_line(small, once);
+    read_line(large, twice);
+    for (int i = 0; i < 4; i++)
+        assert_float_equal(twice[i], 2 * once[i], 0.002);
+    assert_float_equal(twice[0] + twice[2], 320, 0.002); // the camera looks at the line's middle
+    assert_float_equal(twice[1], 120, 0.001);
+    assert_non_null(strstr(small, "<rect x=\"21\" y=\"13\""));
+    assert_non_null(strstr(large, "<rect x=\"42\" y=\"26\""));
+    assert_non_null(strstr(small, "font-size=\"13\"")); // the bitmap font has no 10 pixels
+    assert_non_null(strstr(large, "font-size=\"26\""));
+    const glint_write_desc plain = { .pass = GLINT_PASS_BEAUTY, .tone = w.render.tone };
+    assert_int_equal(glint_image_rgba(glint_image_without_overlays(image), &plain, rgba, &error), GLINT_OK);
+    for (size_t i = 0; i < sizeof rgba; i++)
+        assert_int_equal(rgba[i], 255);
+    const glint_page bad = { .width = WIDTH, .height = 0, .scale = 1 };
+    assert_int_equal(glint_image_overlays_svg(image, &bad, &none, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "page.height: expected 1 .. 65535, got 0");
+    free(small);
+    free(large);
+    glint_image_release(image);
+    glint_plan_destroy(plan);
+    glint_overlay_release(other);
+    drop_world(&w);
+}
+
 /// A changed text changes the key of beauty and the bytes of the file, and runs no stage again. The planes, the other
 /// passes and their keys stay the same. The earlier picture is unchanged.
 static void test_reuse(void **state)
@@ -511,7 +575,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
         cmocka_unit_test(test_axes),    cmocka_unit_test(test_box_axes), cmocka_unit_test(test_box_outside),
-        cmocka_unit_test(test_region),     cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_region),  cmocka_unit_test(test_page),       cmocka_unit_test(test_reuse),
         cmocka_unit_test(test_writer),  cmocka_unit_test(test_key),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

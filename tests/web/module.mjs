@@ -183,6 +183,35 @@ await test("files and modules that the script was given, and warnings", async ()
   job.close()
 })
 
+// ---- Layers ----
+
+const vectors = fs.readFileSync("tests/web/vectors.lua", "utf8")
+
+await test("layers: the command's picture without overlays, and the overlays for a page", async () => {
+  const job = await glint.open(vectors, { name: "vectors.lua" })
+  const page = (width, height, least) => ({ width: 320, height: 200, layers: { width, height, least } })
+  const images = [await job.render(page(640, 400, 12)), await job.render(page(390, 244, 12)), await job.render({ width: 320, height: 200 })]
+  for (const [i, marks] of ["false", "false", "true"].entries()) {
+    native("tests/web/vectors.lua", ["--size", "320x200", "--set", `marks=${marks}`], `${OUT}/vectors.png`)
+    assert(sameBits(images[i].rgba, decode(fs.readFileSync(`${OUT}/vectors.png`)).rgba), `picture ${i}`)
+  }
+  const numbers = (svg, pattern) => [...svg.matchAll(pattern)].map(found => Number(found[1]))
+  const [wide, narrow] = images.map(image => image.marks)
+  assert.equal(images[2].marks, "")
+  assert.match(wide, /^<svg [^>]*viewBox="0 0 640 400"/)
+  assert.match(narrow, /^<svg [^>]*viewBox="0 0 390 244"/)
+  assert(narrow.includes(">s") || narrow.includes("size 16"), "the label's text")
+  // of the arrow behind the ball, only the part above the ball is drawn; the axis is at the page's middle
+  const [x, y] = /<path d="M([\d.]+) ([\d.]+)L/.exec(wide).slice(1).map(Number)
+  const k = 200 / Math.tan(18 * Math.PI / 180) // pixels of a unit length at the distance 1
+  const limb = Math.tan(Math.asin(1 / Math.sqrt(64.25)) - Math.atan(0.5 / 8)) // slope of the line of sight that touches the ball
+  assert(Math.abs(x - 320) < 0.01 && Math.abs(y - (200 - k * limb)) < 1, `the arrow begins at ${x}, ${y}; ${200 - k * limb}`)
+  assert(Math.abs(/<path d="M([\d.]+) /.exec(narrow)[1] - 195) < 0.01)
+  for (const size of numbers(narrow, /font-size="([\d.]+)"/g)) assert(size >= 12, `letters of ${size} pixels`)
+  await assert.rejects(job.render(page(0, 10, 12)), /page.width: expected 1 \.\. 65535, got 0/)
+  job.close()
+})
+
 // ---- Steps ----
 
 const soft = fs.readFileSync("tests/web/soft.lua", "utf8")
