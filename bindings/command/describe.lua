@@ -24,21 +24,28 @@ local function comment_of(path)
   return table.concat(out, "\n"):match "^(.-)\n*$"
 end
 
-local function choices_of(spec, spell, between)
+local function listed(values, spell, between)
   local out = {}
-  for i, choice in ipairs(spec.choices) do out[i] = spell(choice) end
+  for i, value in ipairs(values) do out[i] = spell(value) end
   return table.concat(out, between)
 end
+
+local FIELDS <const> = { "name", "type", "default", "value", "min", "max", "whole", "drag", "unit", "label", "doc" }
 
 -- Returns the parameters as a JSON list.
 function the.params(params)
   local list = {}
   for i, spec in ipairs(params) do
     local out = {}
-    for _, name in ipairs { "name", "type", "default", "value", "min", "max", "whole", "doc" } do
-      if spec[name] ~= nil then out[#out + 1] = json(name) .. ":" .. json(spec[name]) end
+    for _, name in ipairs(FIELDS) do
+      local value = spec[name]
+      if value ~= nil then
+        local is_list = spec.type == "point" and (name == "default" or name == "value")
+        out[#out + 1] = json(name) .. ":" .. (is_list and "[" .. value .. "]" or json(value))
+      end
     end
-    if spec.choices then out[#out + 1] = '"choices":[' .. choices_of(spec, json, ",") .. "]" end
+    if spec.choices then out[#out + 1] = '"choices":[' .. listed(spec.choices, json, ",") .. "]" end
+    if spec.names then out[#out + 1] = '"names":[' .. listed(spec.names, json, ",") .. "]" end
     list[i] = "{" .. table.concat(out, ",") .. "}"
   end
   return "[" .. table.concat(list, ",") .. "]"
@@ -56,8 +63,9 @@ function the.people(what)
   for _, spec in ipairs(what.params) do
     local range = (spec.min or spec.max) and ("  %s .. %s"):format(spec.min or "", spec.max or "") or ""
     if spec.whole then range = range .. "  whole" end
+    if spec.unit then range = range .. "  " .. spec.unit end
     out[#out + 1] = ("  %-22s%s%s%s\n"):format(spec.name .. "=" .. tostring(spec.value), range,
-      spec.choices and "  " .. choices_of(spec, tostring, "|") or "", spec.doc and "  " .. spec.doc or "")
+      spec.choices and "  " .. listed(spec.choices, tostring, "|") or "", spec.doc and "  " .. spec.doc or "")
   end
   return table.concat(out)
 end

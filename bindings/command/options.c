@@ -321,6 +321,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       .group = "picture" },
     { "region", 0, "RECT", CLI_RENDER | CLI_EXPLAIN, read_render, .help = "X,Y,W,H: render only this part of the "
                                                                           "frame" },
+    { "orbit", 0, "VIEW", CLI_RENDER, read_render,
+      .help = "YAW,PITCH or YAW,PITCH,ZOOM,RIGHT,UP: move the camera around, in degrees to the right and up" },
     { "size", 0, "WxH", SHOWN | CLI_PUBLISH, read_size, .help = "width and height in pixels",
       .suggest = "640x360 1280x720 1920x1080 3840x2160" },
     { "dpi", 0, "N", SHOWN | CLI_SHEET | CLI_RELIGHT, read_render, .help = "pixels per inch, for print" },

@@ -1,6 +1,6 @@
-// glint.params: numbers, switches and words of a script that the command line can set.
+// glint.params: numbers, switches, words and points of a script that the command line can set.
 //
-//     local P = glint.params { radius = { 15, min = 1, max = 40, doc = "orbit radius" }, shiny = true }
+//     local P = glint.params { radius = { 15, min = 1, max = 40, doc = "orbit radius" }, shiny = true, lamp = { { 3, 5, 2 }, drag = true } }
 //
 // The default determines the type. The text of --set is read as a literal of that type and never evaluated.
 #include <stdlib.h>
@@ -159,7 +159,7 @@ static int new_params(lua_State *L)
         const char *name = lua_tostring(L, 6);
         lua_getfield(L, 1, name); // 7
         glintL_push_param_spec(L, run, name, 7);
-        lua_getfield(L, -1, "value");
+        glintL_push_param_value(L, lua_gettop(L));
         lua_setfield(L, 3, name);
         lua_getiuservalue(L, 2, 2);
         lua_pushvalue(L, -2);
@@ -193,7 +193,7 @@ static void vary(lua_State *L, const char *name)
     if (!glintL_wants_variable(glintL_get_run(L), name))
         return;
     if (lua_type(L, -1) != LUA_TNUMBER)
-        glintL_error(L, "passes: d:%s: the parameter is a %s; only number parameters have derivatives", name, luaL_typename(L, -1));
+        glintL_error(L, "passes: d:%s: the parameter is a %s; only number parameters have derivatives", name, lua_isuserdata(L, -1) ? "point" : luaL_typename(L, -1));
     if (strlen(name) >= GLINT_DERIVATIVE_NAME_SIZE)
         glintL_error(L, "passes: d:%s: expected a name of at most %d bytes", name, GLINT_DERIVATIVE_NAME_SIZE - 1);
     glintL_make_variable(L, name, lua_tonumber(L, -1));

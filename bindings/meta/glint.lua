@@ -823,6 +823,7 @@ function glint.scene(fields) end
 ---@field output? string  file name, .png, .svg or .pdf (overlays as vectors), .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  passes written in addition to the beauty: a list, or "ambient,depth"; "all": every pass except d:NAME. Default none
 ---@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": renders only this part of the frame, in pixels from the top left, bit-identical to the same part of the whole frame. Default: all
+---@field orbit? boolean|string  whether the reader of a live figure may turn the view around the point at which the camera looks. Default false. "YAW,PITCH,ZOOM,RIGHT,UP" turns it, as `--orbit` does
 
 ---@class glint.save_options
 ---@field bits? 8|16  bits per channel of a .png. Default 8
@@ -875,12 +876,16 @@ function image:save(path, options) end
 --- Parameters that `--set name=value` changes. Each is a default, or a table with the default and its limits.
 --- They are read as `P.name`. The default determines the type.
 ---@class glint.param
----@field [1] number|boolean|string  the default
+---@field [1] number|boolean|string|glint.vec3  the default; a point { x, y, z } is read as a vector, and set by NAME=X,Y,Z
 ---@field min? number  smallest value allowed
 ---@field max? number  largest value allowed
 ---@field choices? (number|string)[]  the only values allowed
 ---@field whole? boolean  whether only whole numbers are allowed
----@field doc? string  one line for `--help`
+---@field doc? string  one line for `--help`, and below the control of a live figure
+---@field label? string  name of the control of a live figure, which may have formulas between $. Default: the parameter's name
+---@field unit? string  unit of a number, shown after its value
+---@field names? table<number|string, string>  texts shown for `choices`: { blinn_phong = "Blinn-Phong" }
+---@field drag? boolean  whether the reader of a live figure may drag the point in the picture. Default false
 
 ---@param list table<string, glint.param|number|boolean|string>
 ---@return table<string, any>

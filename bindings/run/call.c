@@ -186,7 +186,7 @@ static glint_status fill_handle(lua_State *L, int first, const glint_scene *scen
         return GLINT_OK;
     }
     if (open) { // the work needs its own plan later
-        glint_status status = glint_plan_create(scene, &work->render.desc, &plan, error);
+        glint_status status = glintL_orbit_plan(scene, &work->render.orbit, &work->render.desc, NULL, &plan, error);
         if (status)
             return status;
     } else {
@@ -273,7 +273,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
     glintL_render_point(&render);
     if (run->mode == GLINTL_MODE_EXPLAIN && run->count == run->explain_frame) {
         glint_error error;
-        if (glint_plan_create(scene, &render.desc, &run->explain_plan, &error))
+        if (glintL_orbit_plan(scene, &render.orbit, &render.desc, NULL, &run->explain_plan, &error))
             return glintL_error(L, PATH "%s", error.message);
         glintL_run_keep_scene(run, scene, &render);
         return glintL_stop_script(L);

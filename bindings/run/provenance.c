@@ -19,7 +19,7 @@ static void add(glintL_provenance *out, const char *keyword, const char *value)
 
 static void list_options(const glintL_render *render, char *out, size_t capacity)
 {
-    char value[64];
+    char value[96];
     size_t used = 0;
     out[0] = '\0';
     for (int field = 0; field < GLINTL_RENDER_FIELDS && used < capacity; field++)

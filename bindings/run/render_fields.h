@@ -32,6 +32,7 @@
     OPTION(visibility, CHOICE, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \
            "how visible surfaces are found; the pictures are the same")                                                \
     FIELD(adaptive, NUMBER, REAL, desc.adaptive, 0, 3, NULL)                                                            \
-    FIELD(region, TEXT, REGION, desc.region, 0, 0, NULL)
+    FIELD(region, TEXT, REGION, desc.region, 0, 0, NULL)                                                                \
+    FIELD(orbit, TEXT, ORBIT, orbit, 0, 0, NULL)
 
 #endif

@@ -20,7 +20,8 @@ typedef enum sort {
     FLAG, // a bool
     OUTPUT,
     PASSES,
-    REGION // four doubles; all 0: none
+    REGION, // four doubles; all 0: none
+    ORBIT
 } sort;
 
 typedef struct detail {
@@ -111,6 +112,9 @@ static void describe(const detail *option, char out[256])
         break;
     case REGION:
         snprintf(out, 256, "region X,Y,WIDTH,HEIGHT in whole pixels from the top left");
+        break;
+    case ORBIT:
+        snprintf(out, 256, "true, false or YAW,PITCH,ZOOM,RIGHT,UP in degrees and heights of the picture, with ZOOM 0.001 .. 1000");
         break;
     case PASSES:
         for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
@@ -317,6 +321,8 @@ static bool set_word(glintL_render *render, const detail *option, const char *te
         good = set_flag(render, option, text);
     else if (option->sort == REGION)
         good = set_region(render->desc.region, text);
+    else if (option->sort == ORBIT)
+        good = glintL_orbit_read(text, &render->orbit);
     else if (option->sort == PASSES)
         return read_passes(text, render, message);
     else if (option->sort == COLORS)
@@ -409,10 +415,10 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
             refuse(L, index, path, field);
         return;
     }
-    if (option->sort == FLAG) {
+    if (option->sort == FLAG || (option->sort == ORBIT && lua_isboolean(L, index))) {
         if (!lua_isboolean(L, index))
             refuse(L, index, path, field);
-        set_flag(render, option, lua_toboolean(L, index) ? "true" : "false");
+        set_word(render, option, lua_toboolean(L, index) ? "true" : "false", message);
         return;
     }
     if (option->sort == PASSES && lua_istable(L, index)) {
@@ -469,7 +475,7 @@ static void push_region(lua_State *L, const double region[4])
     }
 }
 
-bool glintL_render_spell(const glintL_render *render, int field, char out[64])
+bool glintL_render_spell(const glintL_render *render, int field, char out[96])
 {
     const detail *option = &details[field];
     const char *at = (const char *)render + option->offset;
@@ -495,9 +501,11 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
         glintL_spell_colormap(render->colormap, render->range, out);
         return true;
     case REGION:
-        snprintf(out, 64, "%.0f,%.0f,%.0f,%.0f", render->desc.region[0], render->desc.region[1],
+        snprintf(out, 96, "%.0f,%.0f,%.0f,%.0f", render->desc.region[0], render->desc.region[1],
                  render->desc.region[2], render->desc.region[3]);
         return render->desc.region[2] > 0;
+    case ORBIT:
+        return glintL_orbit_spell(&render->orbit, out);
     default:
         return false;
     }
@@ -544,6 +552,9 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
         break;
     case REGION:
         push_region(L, render->desc.region);
+        break;
+    case ORBIT:
+        lua_pushboolean(L, render->orbit.is_allowed);
         break;
     }
 }

@@ -92,7 +92,7 @@ bool glintL_render_set_text(glintL_render *render, int field, const char *text, 
 void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render);
 void glintL_render_push(lua_State *L, int field, const glintL_render *render);
 /// Writes the field as glintL_render_set_text reads it; false: the field does not affect the picture.
-bool glintL_render_spell(const glintL_render *render, int field, char out[64]);
+bool glintL_render_spell(const glintL_render *render, int field, char out[96]);
 
 // ---- colormap_words.c ----
 
@@ -225,6 +225,7 @@ typedef struct glintL_work {
     double build_ms;
     glintL_render render;
     glint_plan *plan;
+    glint_camera_desc camera; ///< of the frame, turned by render.orbit
     glint_image *image; ///< NULL before rendering
     glint_frame_stats stats;
     double error; ///< the estimate, if the run refines frames
@@ -405,6 +406,17 @@ bool glintL_view_axes(const glint_camera_desc *camera, double forward[3], double
 bool glintL_may_show(const glint_scene *scene, const glint_camera_desc *camera, const glint_render_desc *desc);
 /// Computes a ball around the scene's shapes except planes; false: there are none.
 bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radius);
+/// orbit.c: reads "true", "false" or the numbers of --orbit. False: the text is neither.
+bool glintL_orbit_read(const char *text, glintL_orbit *orbit);
+/// Writes the numbers of --orbit. Returns whether they turn the view.
+bool glintL_orbit_spell(const glintL_orbit *orbit, char out[96]);
+/// Turns the camera of a scene. False: the view is not turned; otherwise the caller ends with the fields in `before`.
+bool glintL_orbit_begin(const glint_scene *scene, const glintL_orbit *orbit, const glint_render_desc *desc,
+                        glint_camera_desc *before);
+void glintL_orbit_end(const glint_scene *scene, const glint_camera_desc *before);
+/// glint_plan_create with the turned camera. camera: gets the fields of the camera; may be NULL.
+glint_status glintL_orbit_plan(const glint_scene *scene, const glintL_orbit *orbit, const glint_render_desc *desc,
+                               glint_camera_desc *camera, glint_plan **out, glint_error *error);
 /// own_camera.c: gives a scene without a camera one that has its shapes in view, with a warning. The scene's userdata
 /// is at `index`. A chart without shapes gets any camera, without a warning. Other values and scenes without shapes are
 /// left unchanged.
@@ -642,7 +654,11 @@ void glintL_set_kept_plan(lua_State *L, int index, glint_plan *plan);
 
 /// Pushes the spec of one parameter, from its entry in the table of glint.params at `entry` (absolute).
 void glintL_push_param_spec(lua_State *L, glintL_run *run, const char *name, int entry);
-/// Pushes the list of all parameters: {name=, type=, default=, value=, min=, max=, choices=, doc=}.
+/// Pushes the value of a parameter for the script: spec.value, or a vector for a point, whose value in its spec is the
+/// text "X,Y,Z". spec: absolute index.
+void glintL_push_param_value(lua_State *L, int spec);
+/// Pushes the list of all parameters: {name=, type=, default=, value=, min=, max=, whole=, drag=, unit=, label=, doc=,
+/// choices=, names=}. `names` has a text for each choice.
 void glintL_push_params(lua_State *L);
 /// Pushes the allowed values of a parameter, for messages. spec: absolute index of its description.
 const char *glintL_push_allowed(lua_State *L, int spec);

@@ -255,7 +255,7 @@ static bool plan_times(glintL_walk *walk, glintL_work *work, int64_t n, const gl
         if (!scene || !glintL_walk_call(walk, derive, n, work->index))
             return false;
         take_derivatives(&walk->render.desc, derivatives, &desc);
-        if (glint_plan_create(scene, &desc, &plans[k], &error))
+        if (glintL_orbit_plan(scene, &work->render.orbit, &desc, NULL, &plans[k], &error))
             return fail_at(walk, work->index, &error);
     }
     if (!glintL_walk_build_frame(walk, n, work->index) || !glintL_walk_open_scene(walk, work->index) || !glintL_walk_call(walk, derive, n, work->index))

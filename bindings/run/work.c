@@ -43,7 +43,7 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     if (writes || keep_image)
         glintL_render_point(&work->render);
     if (!status)
-        status = glint_plan_create(scene, desc, &work->plan, error);
+        status = glintL_orbit_plan(scene, &render->orbit, desc, &work->camera, &work->plan, error);
     if (status) {
         free(work);
         return status;
@@ -56,7 +56,11 @@ glint_status glintL_work_expose(glintL_work *work, const glint_scene *scene, gli
                                 glint_error *error)
 {
     glint_plan *plan;
+    glint_camera_desc before;
+    const bool is_turned = glintL_orbit_begin(scene, &work->render.orbit, &work->render.desc, &before);
     glint_status status = glint_plan_create_exposed(scene, &work->render.desc, times, count, &plan, error);
+    if (is_turned)
+        glintL_orbit_end(scene, &before);
     if (status)
         return status;
     glint_plan_destroy(work->plan);

@@ -445,6 +445,14 @@ void glintL_group_push_at(lua_State *L, const void *group, size_t index);
 void glintL_group_fill(lua_State *L, int list, int index, const char *name);
 
 /// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
+/// A view turned by hand; see orbit.c. All 0: not turned.
+typedef struct glintL_orbit {
+    bool is_allowed; ///< a page may turn the view
+    double yaw, pitch; ///< degrees to the right and up
+    double zoom; ///< the distance to the target is divided by it, > 0; 0: as 1
+    double right, up; ///< shift of the picture, in its heights
+} glintL_orbit;
+
 typedef struct glintL_render {
     glint_render_desc desc;
     char output[4096]; ///< "": not given
@@ -456,6 +464,7 @@ typedef struct glintL_render {
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the passes d:NAME to write
     int derivative_count;
     char light_passes[4096]; ///< names of the passes light:NAME to write, separated by commas; see glintL_render_point
+    glintL_orbit orbit;
     double own_samples; ///< samples of a pixel before the limits of a preview
 } glintL_render;
 

@@ -31,9 +31,10 @@ typedef struct web_job {
     int64_t frames;
     double width, height; // size of the first frame
     double fps; // frame rate of the first animation; 24 for calls of scene:render
-    char *params, *plan; // JSON; owned
+    char *params, *plan, *handles; // JSON; owned
     glint_image *image; // picture of the last frame
     glintL_render render;
+    glint_camera_desc camera; // camera of the last frame
     double sample_ms; // time that a sample of the last picture took; 0: unknown
     double error; // estimate for the last picture; < 0: unknown
     bool is_doubtful; // the estimate is not to be trusted
@@ -165,6 +166,7 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     glint_image_release(job.image);
     job.image = glint_image_retain(work->image);
     job.render = work->render;
+    job.camera = work->camera;
     job.sample_ms = work->stats.render_ms / samples_of(&job.render.desc);
 }
 
@@ -258,13 +260,60 @@ static bool measure_call(void)
     return true;
 }
 
+// Writes the handle of a point: its place in the picture, as fractions of width and height, and the vectors that one
+// width to the right and one height down move it in the plane through it that faces the camera.
+static void print_handle(FILE *out, const char *name, const double point[3])
+{
+    const double width = job.render.desc.width, height = job.render.desc.height;
+    double pixel[2], depth, near[3], far[3], along = 0, square = 0, moved[2][3];
+    if (!glint_camera_project(&job.camera, width, height, point, pixel, &depth))
+        return;
+    glint_camera_point(&job.camera, width, height, pixel, 0, near);
+    glint_camera_point(&job.camera, width, height, pixel, 1, far);
+    for (int i = 0; i < 3; i++) {
+        along += (point[i] - near[i]) * (far[i] - near[i]);
+        square += (far[i] - near[i]) * (far[i] - near[i]);
+    }
+    for (int axis = 0; axis < 2; axis++)
+        glint_camera_point(&job.camera, width, height,
+                           (const double[]) { pixel[0] + (axis == 0 ? width : 0), pixel[1] + (axis == 1 ? height : 0) },
+                           along / square, moved[axis]);
+    fputs(ftell(out) > 1 ? ",{\"name\":" : "{\"name\":", out);
+    glintL_json_string(out, name);
+    fprintf(out, ",\"x\":%.9g,\"y\":%.9g", pixel[0] / width, pixel[1] / height);
+    for (int axis = 0; axis < 2; axis++)
+        fprintf(out, ",\"%s\":[%.17g,%.17g,%.17g]", axis == 0 ? "right" : "down", moved[axis][0] - point[0],
+                moved[axis][1] - point[1], moved[axis][2] - point[2]);
+    fputc('}', out);
+}
+
+static int print_handles(lua_State *L)
+{
+    FILE *out = lua_touserdata(L, 1);
+    glintL_push_params(L);
+    const lua_Integer count = luaL_len(L, 2);
+    fputc('[', out);
+    for (lua_Integer i = 1; i <= count; i++) {
+        lua_settop(L, 2);
+        lua_rawgeti(L, 2, i);
+        lua_getfield(L, 3, "drag");
+        glintL_push_param_value(L, 3);
+        const double *point = lua_toboolean(L, 4) ? glintL_to_vector(L, 5) : NULL;
+        if (point && lua_getfield(L, 3, "name") == LUA_TSTRING)
+            print_handle(out, lua_tostring(L, -1), point);
+    }
+    fputc(']', out);
+    return 0;
+}
+
 static int print_params(lua_State *L)
 {
     cli_print_params(L, lua_touserdata(L, 1));
     return 0;
 }
 
-static bool keep_params(void)
+// Stores what a function prints about the script.
+static bool keep_text(lua_CFunction print, char **kept)
 {
     char *text = NULL;
     size_t size = 0;
@@ -272,12 +321,12 @@ static bool keep_params(void)
     FILE *out = open_memstream(&text, &size);
     if (!out)
         return glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    lua_pushcfunction(L, print_params);
+    lua_pushcfunction(L, print);
     lua_pushlightuserdata(L, out);
     const bool good = lua_pcall(L, 1, 0, 0) == LUA_OK;
-    free(job.params);
-    job.params = glintL_close_text(out, &text);
-    return (good && job.params) || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    free(*kept);
+    *kept = glintL_close_text(out, &text);
+    return (good && *kept) || glintL_run_fail(job.run, GLINTL_EXIT_FAILED, 0, "out of memory");
 }
 
 // ---- Functions for worker.mjs. They return true on success; on failure false, NULL or 0 ----
@@ -347,7 +396,7 @@ EMSCRIPTEN_KEEPALIVE bool web_run(void)
     job.calls = job.run->count;
     job.fps = 24;
     job.frames = job.calls + (job.script.has_jobs ? job.script.frames : 0);
-    if (!keep_params())
+    if (!keep_text(print_params, &job.params))
         return false;
     if (job.calls == 0)
         measure_job();
@@ -439,6 +488,15 @@ EMSCRIPTEN_KEEPALIVE bool web_is_trusted(void) { return !job.is_doubtful; }
 EMSCRIPTEN_KEEPALIVE double web_samples(void) { return job.render.desc.samples; }
 EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }
 EMSCRIPTEN_KEEPALIVE int web_image_height(void) { return glint_image_height(job.image); }
+
+/// Returns whether the view of the last frame may be turned.
+EMSCRIPTEN_KEEPALIVE bool web_orbit(void) { return job.render.orbit.is_allowed; }
+
+/// Returns the handles of the points that the reader may move in the last frame, as JSON.
+EMSCRIPTEN_KEEPALIVE const char *web_handles(void)
+{
+    return job.script.state && keep_text(print_handles, &job.handles) ? job.handles : "[]";
+}
 
 // Returns the number of the pass with that name in the last frame, or -1.
 static int find_pass(const char *name)

@@ -126,7 +126,8 @@ function render(message) {
   const planes = Object.fromEntries(namePasses(passes).map(name => [name, plane(name)]))
   const marks = layers && view === "beauty" ? engine.UTF8ToString(check(call("web_marks", layers.width, layers.height, layers.scale, layers.least))) : ""
   const samples = call("web_samples")
-  return { frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, marks, planes, warnings: warnings(), printed, memory: engine.HEAPU8.length }
+  return { frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, marks, planes, orbit: Boolean(call("web_orbit")),
+    handles: JSON.parse(text("web_handles")), warnings: warnings(), printed, memory: engine.HEAPU8.length }
 }
 
 // Returns the estimated error of a step. undefined: the frame has no steps, or the engine has rendered another picture

@@ -392,6 +392,39 @@ io.stderr:write(P.mode, " ", tostring(P.shiny), ", ") return require("scene").sc
     prints "describe" '"name":"radius","type":"number","default":4,"value":4,"min":1,"max":40,"doc":"orbit radius"'
     prints "describe has choices" '"choices":\["day","night"\]'
     check "describe is one line" test "$(wc -l <out)" -eq 1
+    cat >point.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params {
+  lamp = { { 3, 5, 2.5 }, drag = true, label = "The $lamp$", doc = "its place" }, n = { 16, min = 1, max = 99, unit = "cm" },
+  model = { "phong", choices = { "phong", "blinn_phong" }, names = { blinn_phong = "Blinn-Phong" } } }
+print(P.lamp.x, P.lamp.y, P.lamp.z)
+LUA
+    run describe --json point.lua
+    prints "describe has points" '"name":"lamp","type":"point","default":\[3,5,2.5\],"value":\[3,5,2.5\],"drag":true,"label":"The \$lamp\$"'
+    prints "describe has names for choices" '"choices":\["phong","blinn_phong"\],"names":\["phong","Blinn-Phong"\]'
+    prints "describe has units" '"unit":"cm"'
+    run describe --json point.lua --set lamp=-1,2e1,.5
+    prints "a point is set" '"value":\[-1,20,0.5\]'
+    for wrong in 1,2 1,2,3,4 1,2,x 1,2,inf '' 1,,2; do
+        exits 2 "the point '$wrong'" describe point.lua --set "lamp=$wrong"
+        says "the point '$wrong'" "--set lamp: point X,Y,Z expected, got '$wrong'"
+    done
+    while IFS='|' read -r field message; do
+        echo "require 'glint'.params { $field }" >wrong.lua
+        exits 2 "params { $field }" describe wrong.lua
+        says "params { $field }" "wrong.lua:1: params\.a$message"
+    done <<'END'
+a = { { 1, 2, 3 }, min = 1 }|.min: a point has no min
+a = { { 1, 2 } }|\[3\]: number expected, got nil
+a = { 1, drag = true }|.drag: a number has no drag
+a = { "x", unit = "m" }|.unit: a string has no unit
+a = { "x", choices = { "x" }, names = { z = "Z" } }|.names: 'z' is none of the choices
+a = { "x", names = { x = "X" } }|.names: expected together with choices
+a = { "x", choices = { "x" }, names = { x = 1 } }|.names: text for each choice expected, got 1
+a = { { 1, 2, 3 }, choices = { { 1, 2, 3 } } }|.choices: a point has no choices
+a = { 1, label = 3 }|.label: string expected, got 3
+a = { 1, lable = "x" }|.lable: no such field; did you mean 'label'
+END
     exits 0 "describe of a loop renders nothing" describe loop.lua --json
     files "describe writes nothing"
 }
