@@ -35,8 +35,8 @@ class Image {
   #planes
   constructor(result) {
     const { planes, ...rest } = result
-    // frame, width, height, rgba, warnings, printed, memory: bytes used by the engine; samples and ownSamples of a pixel:
-    // the picture's and the full picture's
+    // frame, width, height, rgba, marks, warnings, printed, memory: bytes used by the engine; samples and ownSamples of a
+    // pixel: the picture's and the full picture's; pixelMs: time for the pixels; casts: primary rays that were cast
     Object.assign(this, rest)
     this.#planes = planes
   }
@@ -169,11 +169,15 @@ class Host {
 class Job {
   #host
   #set
-  constructor(host, set, opened) {
+  #open
+  constructor(host, set, opened, open) {
     this.#host = host
     this.#set = set
-    Object.assign(this, opened) // params, frames, fps, width, height, warnings, printed
+    this.#open = open
+    Object.assign(this, opened) // params, frames, fps, width, height, samples, warnings, printed
   }
+  /** Opens the script again, in another worker. */
+  another() { return this.#open() }
   /**
    * Renders a frame. `set` overrides the values the job was opened with. `passes` are the passes whose numbers
    * image.plane() returns; they take extra time. `view` is the pass that image.rgba shows, as in its .png. With `layers`,
@@ -261,13 +265,16 @@ export async function load({ wasm, worker } = {}) {
     async open(source, { name = "scene.lua", files = {}, set = {}, seconds = 10, signal } = {}) {
       const given = spellAll(set)
       const message = { call: "open", name, source, files, set: given, seconds }
-      const host = new Host(engine, message)
-      try {
-        return new Job(host, given, await host.ask(message, signal))
-      } catch (error) {
-        host.close()
-        throw error
+      const begin = async signal => {
+        const host = new Host(engine, message)
+        try {
+          return new Job(host, given, await host.ask(message, signal), begin)
+        } catch (error) {
+          host.close()
+          throw error
+        }
       }
+      return begin(signal)
     },
   }
 }

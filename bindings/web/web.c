@@ -29,13 +29,15 @@ typedef struct web_job {
     double render_ms; // start of the current render
     int64_t calls; // number of calls of scene:render in the script; the frames of its jobs have higher numbers
     int64_t frames;
-    double width, height; // size of the first frame
+    double width, height, samples; // size of the first frame, and samples of its pixels
     double fps; // frame rate of the first animation; 24 for calls of scene:render
     char *params, *plan, *handles; // JSON; owned
     glint_image *image; // picture of the last frame
     glintL_render render;
     glint_camera_desc camera; // camera of the last frame
     double sample_ms; // time that a sample of the last picture took; 0: unknown
+    double pixel_ms; // time that the last picture took for its pixels
+    double casts; // primary rays that the last picture cast
     double error; // estimate for the last picture; < 0: unknown
     bool is_doubtful; // the estimate is not to be trusted
     uint8_t *bytes; // result of the last request; owned
@@ -168,6 +170,8 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     job.render = work->render;
     job.camera = work->camera;
     job.sample_ms = work->stats.render_ms / samples_of(&job.render.desc);
+    job.pixel_ms = work->stats.render_ms;
+    job.casts = (double)work->stats.rays.primary;
 }
 
 static void warn(void *context, const char *message)
@@ -227,13 +231,14 @@ static const glintL_job *job_of(int64_t frame, glintL_render *render)
     return found;
 }
 
-// Stores the size of the list's first frame, and the frame rate.
+// Stores the size and samples of the list's first frame, and the frame rate.
 static void measure_job(void)
 {
     glintL_render render;
     job.fps = job_of(1, &render)->fps;
     job.width = render.desc.width;
     job.height = render.desc.height;
+    job.samples = render.desc.samples;
 }
 
 // Plans a frame in a separate run of the script. The run owns the plan.
@@ -249,7 +254,7 @@ static bool explain(int64_t frame)
     return job.run->explain_plan != NULL;
 }
 
-// Stores the size of the first call of scene:render.
+// Stores the size and samples of the first call of scene:render.
 static bool measure_call(void)
 {
     if (!explain(1))
@@ -257,6 +262,7 @@ static bool measure_call(void)
     const glint_render_desc *desc = glint_plan_render_desc(job.run->explain_plan);
     job.width = desc->width;
     job.height = desc->height;
+    job.samples = desc->samples;
     return true;
 }
 
@@ -406,6 +412,7 @@ EMSCRIPTEN_KEEPALIVE bool web_run(void)
 EMSCRIPTEN_KEEPALIVE double web_frames(void) { return (double)job.frames; }
 EMSCRIPTEN_KEEPALIVE double web_width(void) { return job.width; }
 EMSCRIPTEN_KEEPALIVE double web_height(void) { return job.height; }
+EMSCRIPTEN_KEEPALIVE double web_first_samples(void) { return job.samples; }
 EMSCRIPTEN_KEEPALIVE double web_fps(void) { return job.fps; }
 EMSCRIPTEN_KEEPALIVE const char *web_params(void) { return job.params; }
 EMSCRIPTEN_KEEPALIVE const char *web_warnings(void) { return job.warnings; }
@@ -486,6 +493,8 @@ EMSCRIPTEN_KEEPALIVE double web_estimate(double frame)
 EMSCRIPTEN_KEEPALIVE bool web_is_trusted(void) { return !job.is_doubtful; }
 
 EMSCRIPTEN_KEEPALIVE double web_samples(void) { return job.render.desc.samples; }
+EMSCRIPTEN_KEEPALIVE double web_pixel_ms(void) { return job.pixel_ms; }
+EMSCRIPTEN_KEEPALIVE double web_casts(void) { return job.casts; }
 EMSCRIPTEN_KEEPALIVE int web_image_width(void) { return glint_image_width(job.image); }
 EMSCRIPTEN_KEEPALIVE int web_image_height(void) { return glint_image_height(job.image); }
 

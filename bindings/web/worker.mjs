@@ -47,7 +47,7 @@ function write(path, bytes) {
 
 const describe = () => ({
   params: JSON.parse(text("web_params")), frames: call("web_frames"), fps: call("web_fps"), width: call("web_width"),
-  height: call("web_height"),
+  height: call("web_height"), samples: call("web_first_samples"),
   warnings: warnings(), printed,
 })
 
@@ -121,13 +121,18 @@ function render(message) {
   check(call("web_render", frame, isStep || "passes" in options, isStep ? call("web_next_samples", frame, after) : 0))
   if (isStep && view === "beauty") shown = keyOf(message)
   const width = call("web_image_width"), height = call("web_image_height")
+  const since = performance.now()
   const at = check(call("web_rgba", view, layers ? 1 : 0))
   const rgba = new Uint8ClampedArray(engine.HEAPU8.slice(at, at + 4 * width * height).buffer)
+  const pixelMs = call("web_pixel_ms") + performance.now() - since
   const planes = Object.fromEntries(namePasses(passes).map(name => [name, plane(name)]))
-  const marks = layers && view === "beauty" ? engine.UTF8ToString(check(call("web_marks", layers.width, layers.height, layers.scale, layers.least))) : ""
+  const marks = layers && view === "beauty" ? check(call("web_marks", layers.width, layers.height, layers.scale, layers.least)) : 0
   const samples = call("web_samples")
-  return { frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, marks, planes, orbit: Boolean(call("web_orbit")),
-    handles: JSON.parse(text("web_handles")), warnings: warnings(), printed, memory: engine.HEAPU8.length }
+  return {
+    frame, width, height, samples, ownSamples: isStep ? own : samples, rgba, marks: engine.UTF8ToString(marks), planes, pixelMs,
+    casts: call("web_casts"), orbit: Boolean(call("web_orbit")), handles: JSON.parse(text("web_handles")), warnings: warnings(), printed,
+    memory: engine.HEAPU8.length,
+  }
 }
 
 // Returns the estimated error of a step. undefined: the frame has no steps, or the engine has rendered another picture

@@ -9,7 +9,7 @@
 //   src        address of the script; without it, the text of a <script type="text/x-lua"> inside the element
 //   files      addresses of the files that the script reads, separated by commas; the script uses the last part of each
 //   controls   names of the script's parameters with a control, separated by commas; default: all parameters
-//   width, height   size of the picture, in pixels; default: the script's own
+//   width, height   size of the picture, in CSS pixels, as of an img; a narrower page makes it smaller. Default: the script's
 //   frame      first frame shown, from 1
 //   timing     shows how long the last full picture took
 // A full picture of several samples appears in steps, with 1, 2, 4 ... samples and their estimated errors.
@@ -20,7 +20,7 @@
 // { error }.
 import { load } from "./glint.mjs"
 import { control } from "./controls.js"
-import { quality, Renderer, show } from "./renderer.js"
+import { quality, Renderer, show, wait } from "./renderer.js"
 
 let engine // one for all figures of a page
 const engineOfPage = () => engine ??= load()
@@ -35,7 +35,11 @@ const style = `
   [hidden] { display: none !important; }
   figure { margin: 0; }
   .picture { position: relative; }
-  canvas, ::slotted(img) { display: block; width: 100%; height: auto; }
+  .picture canvas { display: block; width: 100%; height: 100%; }
+  .picture ::slotted(img) { display: block; width: 100%; height: auto; }
+  .over, .over svg { position: absolute; inset: 0; width: 100%; height: 100%; }
+  .over { pointer-events: none; user-select: none; }
+  .wait { position: absolute; bottom: 0; width: 100%; height: 3px; background: #4a90d9; transform-origin: left; }
   .error { margin: 0; padding: 0.6em 0.8em; white-space: pre-wrap; overflow-wrap: anywhere; font: 0.8125rem/1.4 ui-monospace, monospace;
     background: #8b1a1a; color: #fff; }
   form { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(14rem, 100%), 1fr)); gap: 0.5rem 1.25rem; margin: 0.6rem 0; }
@@ -93,7 +97,8 @@ export class GlintFigure extends HTMLElement {
     super()
     const root = this.attachShadow({ mode: "open" })
     root.innerHTML = `<style>${style}</style>
-      <figure><div class="picture"><slot></slot><canvas role="img" hidden></canvas></div>
+      <figure><div class="picture"><slot></slot><canvas role="img" hidden></canvas>
+        <div class="over" aria-hidden="true"></div><div class="wait" hidden></div></div>
       <pre class="error" role="alert" hidden></pre>
       <div class="bar player" hidden><button type="button" class="play" aria-pressed="false">Play</button>
         <input type="range" class="frames" min="1" step="1" value="1" aria-label="Frame"><span class="note counter"></span></div>
@@ -113,10 +118,17 @@ export class GlintFigure extends HTMLElement {
       this.start()
     }, { rootMargin: "200px" })
     this.watcher.observe(this)
+    this.resizer = new ResizeObserver(() => {
+      const { width } = this.part$(".picture").getBoundingClientRect()
+      if (this.renderedWidth && Math.abs(width - this.renderedWidth) > 0.5) this.ask(false)
+      this.renderedWidth = this.renderer ? width : 0
+    })
+    this.resizer.observe(this.part$(".picture"))
   }
 
   disconnectedCallback() {
     this.watcher?.disconnect()
+    this.resizer?.disconnect()
     this.renderer?.stop()
     this.job?.close()
     this.job = null
@@ -142,21 +154,39 @@ export class GlintFigure extends HTMLElement {
   async start() {
     try {
       const [glint, { name, text, files, values }] = await Promise.all([engineOfPage(), this.source()])
+      this.renderer?.stop()
       this.job?.close()
       this.job = await glint.open(text, { name, files, set: values })
       this.frame = Math.min(Number(this.getAttribute("frame")) || 1, this.job.frames)
       this.renderer = new Renderer(this.job, {
-        size: () => ({ width: Number(this.getAttribute("width")) || this.job.width,
-          height: Number(this.getAttribute("height")) || this.job.height }),
+        page: () => this.page(),
+        waits: ms => wait(this.part$(".wait"), ms),
         shown: (image, how) => this.shown(image, how),
         failed: error => this.failed(error),
       })
+      this.setSize()
       this.makeControls()
       this.makePlayer()
       this.ask(false)
     } catch (error) {
       this.failed(error)
     }
+  }
+
+  // Sets the size of the picture in the page, as an img has it: the attributes', otherwise the script's; limited by the
+  // page's width.
+  setSize() {
+    const { width, height } = this.job, [wide, high] = ["width", "height"].map(name => Number(this.getAttribute(name)))
+    this.wide = wide || (high ? high * width / height : width)
+    this.ratio = wide && high ? wide / high : width / height
+    this.part$("figure").style.maxWidth = `${this.wide}px`
+    this.part$(".picture").style.aspectRatio = this.ratio
+  }
+
+  // Returns the size of the picture in the page.
+  page() {
+    const width = this.part$(".picture").getBoundingClientRect().width || this.wide
+    return { width, height: width / this.ratio }
   }
 
   makeControls() {
@@ -217,7 +247,7 @@ export class GlintFigure extends HTMLElement {
   shown(image, { coarse, ms }) {
     const canvas = this.part$("canvas")
     const inside = this.querySelector("img")
-    show(canvas, image)
+    show(canvas, this.part$(".over"), image)
     canvas.setAttribute("aria-label", inside?.alt || this.getAttribute("aria-label") || "A rendered picture")
     canvas.hidden = false
     this.part$("slot").hidden = true

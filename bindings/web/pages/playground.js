@@ -8,7 +8,7 @@ import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
 import { load } from "./glint.mjs"
 import { control } from "./controls.js"
-import { quality, Renderer, show } from "./renderer.js"
+import { quality, Renderer, show, wait } from "./renderer.js"
 
 const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
@@ -16,7 +16,7 @@ const engine = load()
 
 let examples = []
 let job, renderer, files = {}, name = "scene.lua"
-let values = {}, frame = 1, playing = false, turning, picture, due = 0
+let values = {}, frame = 1, playing = false, turning, due = 0
 
 // ---- The editor ----
 
@@ -83,7 +83,7 @@ async function run() {
     job = opened
     frame = Math.min(frame, job.frames)
     values = Object.fromEntries(Object.entries(values).filter(([key]) => job.params.some(param => param.name === key)))
-    renderer = new Renderer(job, { size, shown, failed: showError })
+    renderer = new Renderer(job, { page, size, shown, failed: showError, waits: ms => wait(get("wait"), ms) })
     clearError()
     showControls()
     showPlayer()
@@ -94,9 +94,13 @@ async function run() {
   }
 }
 
-function size() {
-  const width = Number(get("width").value)
-  return { width, height: Math.max(1, Math.round(width * job.height / job.width)) }
+const sizeOf = width => ({ width, height: Math.max(1, Math.round(width * job.height / job.width)) })
+const size = () => sizeOf(Number(get("width").value))
+
+// Returns the size of the picture in the page, which may be too narrow for the chosen width.
+const page = () => {
+  get("frame-of-picture").style.width = `${size().width}px`
+  return sizeOf(get("frame-of-picture").getBoundingClientRect().width)
 }
 
 function ask(coarse) {
@@ -104,14 +108,11 @@ function ask(coarse) {
 }
 
 function shown(image, { coarse, ms }) {
-  show(get("picture"), image)
+  show(get("picture"), get("over"), image)
   clearError()
   get("state").textContent = image.samples < image.ownSamples ? "refining" : coarse ? "coarse" : "ready"
   get("time").textContent = [`${image.width} × ${image.height}`, quality(image), `${Math.max(1, Math.round(ms))} ms`].filter(Boolean).join(", ")
-  if (!coarse) {
-    picture = image
-    get("save-picture").disabled = false
-  }
+  if (!coarse) get("save-picture").disabled = false
   clearTimeout(turning)
   if (playing) turning = setTimeout(() => playing && goTo(frame % job.frames + 1, true), Math.max(0, due - performance.now()))
 }
@@ -251,7 +252,14 @@ function download(data, filename, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000)
 }
 get("save-script").addEventListener("click", () => download(script(), name, "text/x-lua"))
-get("save-picture").addEventListener("click", () => download(picture.png(), name.replace(/\.lua$/, ".png"), "image/png"))
+get("save-picture").addEventListener("click", async () => { // the command's picture, with the script's own samples
+  try {
+    const picture = await job.render({ frame, set: values, view: get("pass").value, ...size() })
+    download(picture.png(), name.replace(/\.lua$/, ".png"), "image/png")
+  } catch (error) {
+    showError(error)
+  }
+})
 
 // ---- Examples ----
 

@@ -1,8 +1,18 @@
-// Pictures of a job: the order in which they are rendered, and how they are shown.
+// Pictures of a job: in which order, in which size and with how many samples they are rendered, and how they are shown.
 import { written } from "./controls.js"
 
-const REST_MS = 150         // after this time without changes the full picture is rendered
-const COARSE_MS = 30        // time limit for a picture while a control moves
+const REST_MS = 150         // after this time without changes the picture gets its full size and samples
+const ANSWER_MS = 40        // time for a picture while a control moves
+const PIXELS_MS = 16        // of which its pixels get at least this, whatever the fixed part takes
+const FIRST_SCALE = 0.25    // size of the first picture, before any cost is known
+const STEP_MS = 1000        // a picture that takes longer appears in smaller sizes first
+const CHANGE_RATIO = 1.25   // a drag changes the size of its pictures if it is wrong by this factor
+const SETTLED = 4           // after this number of pictures
+const RECENT = 5            // measurements whose median counts
+const WAIT_MS = 500         // shortest time that is shown as a line
+const SAMPLES = 4           // fewest samples of a pixel at rest
+const LETTERS = 12          // smallest size of letters, CSS pixels
+const DENSITY = 2           // most pixels rendered per CSS pixel, in each direction
 
 // Returns the picture's samples and error as text; "" for a scene of one sample.
 export function quality({ samples, ownSamples, error, trusted }) {
@@ -10,68 +20,183 @@ export function quality({ samples, ownSamples, error, trusted }) {
   return ownSamples > 1 ? `${samples} of ${ownSamples} samples${estimate}` : ""
 }
 
-// Draws the picture's 8-bit values on a canvas, whose size in the page does not change.
-export function show(canvas, image) {
+// Draws the picture's 8-bit values on a canvas, and its overlays in the element over the canvas. Their sizes in the page
+// do not change.
+export function show(canvas, over, image) {
   if (canvas.width !== image.width || canvas.height !== image.height) {
     canvas.width = image.width
     canvas.height = image.height
   }
   canvas.getContext("2d").putImageData(new ImageData(image.rgba, image.width, image.height), 0, 0)
+  if (over.shown !== image.marks) over.innerHTML = image.marks
+  over.shown = image.marks
 }
 
-// Renders a job's pictures as the controls request them: one at a time, the newest request first, coarse while a
-// control moves, otherwise in steps. A request cancels the steps of the one before.
-export class Renderer {
-  constructor(job, { size, shown, failed }) {
-    Object.assign(this, { job, size, shown, failed })
-    this.scale = 0.5
-    this.running = false
-    this.next = null
+// Shows in a line how much of a time has passed. ms: the expected time; a short one is not shown.
+export function wait(line, ms) {
+  line.hidden = ms < WAIT_MS
+  if (line.hidden) return
+  line.getAnimations().forEach(one => one.cancel())
+  line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
+}
+
+const median = list => [...list].sort((a, b) => a - b)[list.length >> 1]
+
+// The cost of a picture: a fixed part, which has the script, the overlays and the page, and a part for each sample.
+export class Cost {
+  #fixed = []
+  #sample = []
+  #isCold = true
+
+  // Takes a picture that took `ms`, of which the engine needed `pixelMs` for its samples. isCold: it has little to reuse.
+  // Of cold pictures the quickest counts, since the browser still compiles the engine, and only until there is another.
+  add({ ms, pixelMs, samples, isCold }) {
+    if (isCold && !this.#isCold) return
+    const fixed = Math.max(0, ms - pixelMs), sample = pixelMs / samples, isFirst = !isCold && this.#isCold
+    this.#isCold = isCold
+    this.#fixed = isCold ? [Math.min(fixed, ...this.#fixed)] : [...isFirst ? [] : this.#fixed, fixed].slice(-RECENT)
+    this.#sample = isCold ? [Math.min(sample, ...this.#sample)] : [...isFirst ? [] : this.#sample, sample].slice(-RECENT)
   }
 
-  // Requests a picture. After a coarse picture the full one follows, when there has been no request for a moment.
-  ask(request, coarse = false) {
-    clearTimeout(this.rest)
-    if (coarse) this.rest = setTimeout(() => this.ask(request), REST_MS)
-    this.next = { request, coarse }
+  get isKnown() { return this.#sample.length > 0 }
+  // Returns the expected time of a picture; ms.
+  of(samples) { return this.isKnown ? median(this.#fixed) + samples * median(this.#sample) : Infinity }
+  // Returns the number of samples for which there is time.
+  samplesIn(ms) { return Math.max(ms - median(this.#fixed), PIXELS_MS) / Math.max(median(this.#sample), 1e-9) }
+}
+
+// Renders a job's pictures as the controls request them: one at a time, the newest request first. Each change is
+// answered by a picture of the best size for which there is time. A drag, a series of changes without a rest, keeps this
+// size or changes it once. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change
+// ends them.
+//   page      returns the size of the picture in the page, CSS pixels: { width, height }
+//   size      returns the picture's own size if it may differ: a page that is too narrow shows it smaller
+//   density   returns the device's pixels per CSS pixel
+//   shown     takes (image, { coarse, ms }). coarse: a better picture follows
+//   waits     takes the time that the next picture is expected to take, ms; 0: it is there
+//   failed    takes an error
+export class Renderer {
+  constructor(job, { page, size = page, density = () => globalThis.devicePixelRatio ?? 1, shown, failed, waits = () => {}, clock = performance }) {
+    Object.assign(this, { job, page, size, density, shown, failed, waits, clock })
+    this.cost = new Cost()
+    this.running = false
+    this.next = null
+    this.drag = null // { scale, count, isChanged }; count: pictures so far, 0 for the first picture of all
+    this.second = null // a promise of another job of the script, for the pictures at rest
+  }
+
+  ask(request) {
+    this.next = request
+    this.wake?.()
     this.abort?.abort()
     if (!this.running) this.run()
   }
 
   stop() {
-    clearTimeout(this.rest)
     this.next = null
+    this.wake?.()
     this.abort?.abort()
+    this.#closeSecond()
+  }
+
+  // Returns the size of a picture and of its overlays.
+  #sizes(scale) {
+    const page = this.page(), { width, height } = this.size(), factor = Math.min(DENSITY, this.density()) * scale
+    const whole = side => Math.max(1, Math.round(side))
+    return {
+      width: Math.max(16, whole(width * factor)), height: Math.max(9, whole(height * factor)),
+      layers: { width: whole(page.width), height: whole(page.height), least: LETTERS },
+    }
+  }
+
+  // Returns the scale at which a picture takes ANSWER_MS.
+  #answerScale() {
+    const { width, height } = this.#sizes(1)
+    return this.cost.isKnown ? Math.min(1, Math.sqrt(this.cost.samplesIn(ANSWER_MS) / (width * height))) : FIRST_SCALE
   }
 
   async run() {
     this.running = true
     while (this.next) {
-      const { request, coarse } = this.next
+      const request = this.next
       this.next = null
-      await this.render(request, coarse)
+      try {
+        await this.#answer(request)
+        if (!this.next) await this.#rest()
+        if (!this.next) await this.#fill(request)
+      } catch (error) {
+        if (error.name !== "AbortError") this.failed(error)
+      }
+      this.waits(0)
     }
     this.running = false
   }
 
-  async render(request, coarse) {
-    const { width, height } = this.size()
-    const scale = coarse ? this.scale : 1
-    const small = { width: Math.max(16, Math.round(width * scale)), height: Math.max(9, Math.round(height * scale)) }
-    const abort = coarse ? null : new AbortController()
-    this.abort = abort
+  // Waits for REST_MS, or until there is another request. The first picture does not wait.
+  #rest() {
+    if (!this.drag.count) return
+    return new Promise(done => {
+      const timer = setTimeout(done, REST_MS)
+      this.wake = () => { clearTimeout(timer); done() }
+    })
+  }
+
+  // Shows a picture of the drag's size.
+  async #answer(request) {
+    const isFirst = !this.cost.isKnown
+    this.drag ??= { scale: this.#answerScale(), count: 0, isChanged: false }
+    if (!isFirst) this.drag.count++
+    await this.#picture(this.job, request, this.drag.scale, isFirst || this.drag.count === 1)
+    const better = this.#answerScale() / this.drag.scale
+    if (this.drag.isChanged || this.drag.count < SETTLED || Math.max(better, 1 / better) < CHANGE_RATIO) return
+    this.drag.scale *= better
+    this.drag.isChanged = true
+  }
+
+  // Renders and shows a picture of one sample a pixel.
+  async #picture(job, request, scale, isCold, signal) {
+    const since = this.clock.now(), sizes = this.#sizes(scale)
+    const image = await job.render({ ...request, ...sizes, samples: 1, signal })
+    this.shown(image, { coarse: true, ms: this.clock.now() - since })
+    this.cost.add({ ms: this.clock.now() - since, pixelMs: image.pixelMs, samples: image.width * image.height, isCold })
+  }
+
+  // Shows the picture of full size and samples.
+  async #fill(request) {
+    const sizes = this.#sizes(1), pixels = sizes.width * sizes.height, least = this.job.samples < SAMPLES ? { samples: SAMPLES } : {}
+    const samples = Math.max(SAMPLES, this.job.samples), one = this.cost.of(pixels)
+    const abort = this.abort = new AbortController()
     try {
-      const pictures = coarse ? [this.job.render({ ...request, ...small, samples: 1 })] : this.job.steps({ ...request, ...small, signal: abort.signal })
-      let since = performance.now(), ms
-      for await (const image of pictures) {
-        if (image.error === undefined) ms = performance.now() - since
-        if (coarse) this.scale = Math.min(1, Math.max(0.125, scale * Math.sqrt(COARSE_MS / Math.max(ms, 1))))
-        this.shown(image, { coarse: coarse || image.samples < image.ownSamples, ms })
-        since = performance.now()
+      const job = this.drag.count && this.cost.of(pixels * samples) > STEP_MS / 10 ? await (this.second ??= this.job.another()) : this.job
+      let { scale } = this.drag
+      for (scale *= 2; scale < 0.75 && one > STEP_MS && !this.next; scale *= 2) {
+        this.waits(this.cost.of(pixels * scale * scale))
+        await this.#picture(job, request, scale, true, abort.signal)
       }
-    } catch (error) {
-      if (error.name !== "AbortError") this.failed(error)
+      this.drag = null
+      if (this.next) return
+      let since = this.clock.now(), ms
+      this.waits(one)
+      for await (const image of job.steps({ ...request, ...sizes, ...least, signal: abort.signal })) {
+        if (image.error === undefined) {
+          ms = this.clock.now() - since
+          this.cost.add({ ms, pixelMs: image.pixelMs, samples: pixels * image.samples, isCold: true })
+        }
+        const isLast = image.samples >= image.ownSamples
+        this.shown(image, { coarse: !isLast, ms })
+        if (this.next) return
+        this.waits(isLast ? 0 : this.cost.of(pixels * Math.min(2 * image.samples, image.ownSamples)))
+        since = this.clock.now()
+      }
+    } finally {
+      this.drag = null
+      this.abort = null
+      if (abort.signal.aborted) this.#closeSecond()
     }
-    this.abort = null
+  }
+
+  #closeSecond() {
+    this.second?.then(job => job.close(), () => {})
+    this.second = null
   }
 }
