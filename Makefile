@@ -65,7 +65,7 @@ STRIP_LOCAL  := $(if $(MACOS),-S -x,--strip-unneeded)
 
 have = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
 PACKAGES := libpng zlib libxxhash
-# ISA-L's output depends on the address of its stream (engine/file/deflate.c),
+# ISA-L's output depends on the address of its stream (engine/files/picture/deflate.c),
 # and ThreadSanitizer does not allow the necessary addresses.
 ifeq ($(call have,libisal)$(filter thread,$(SANITIZE)),yes)
   PACKAGES += libisal
@@ -123,10 +123,10 @@ ifeq ($(SANITIZE)$(WASM),)
   HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
 
-# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/README.md): the
+# WITHOUT="indirect bounce" leaves out effects, WITHOUT=all all effects that can be (see engine/render/README.md): the
 # left_out.c of their folders stand in for them, and the tables of kernels change. WITHOUT=MESH omits a part of the
-# kernels, see engine/stages/contract/with.h.
-EFFECTS  := $(patsubst engine/effects/%/left_out.c,%,$(wildcard engine/effects/*/left_out.c))
+# kernels, see engine/render/stages/contract/with.h.
+EFFECTS  := $(patsubst engine/render/effects/%/left_out.c,%,$(wildcard engine/render/effects/*/left_out.c))
 # bounce bounds the light along a ray, which indirect reads; rough follows its rays by indirect's paths.
 LEFT_OUT := $(sort $(if $(filter all,$(WITHOUT)),$(EFFECTS),$(filter $(EFFECTS),$(WITHOUT) $(if $(filter bounce,$(WITHOUT)),indirect) $(if $(filter bounce indirect,$(WITHOUT)),rough))))
 # The switches of with.h for the tables of kernels of a build without these effects.
@@ -166,7 +166,7 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED
 
 # ---- Sources ----
 
-ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/*/*/*.c))
+ENGINE_SRC   := $(sort $(shell find engine -name "*.c"))
 # The module for browsers has its own entry points, and only some files of the command.
 WEB_SRC      := $(filter-out bindings/run/film_pipe.c,$(wildcard $(addsuffix /*.c,$(addprefix bindings/,lua pattern run value web)))) \
                   $(addprefix bindings/command/,$(addsuffix .c,describe events explain json output progress script signals untrusted_lua))
@@ -182,8 +182,8 @@ ifeq ($(KERNELS),native)
 endif
 # The stages and the kernels of effects are compiled for each instruction set, those of geometry and light also for each
 # precision.
-STAGE_SRC    := $(filter-out engine/stages/ref/% engine/stages/simd/select.c,$(filter engine/stages/% $(wildcard engine/effects/*/kernel*.c),$(ENGINE_SRC)))
-STAGES_ONCE  := $(filter engine/stages/simd/% engine/stages/film/% %/shade/samples.c \
+STAGE_SRC    := $(filter-out engine/render/stages/ref/% engine/render/stages/simd/select.c,$(filter engine/render/stages/% $(wildcard engine/render/effects/*/kernel*.c),$(ENGINE_SRC)))
+STAGES_ONCE  := $(filter engine/render/stages/simd/% engine/render/stages/film/% %/shade/samples.c \
                   %/adaptive/kernel.c %/derivative/kernel.c %/pattern/kernel.c %/kernel_sky.c,$(STAGE_SRC))
 STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
 # FLOAT= leaves out float, for a build in less time: the reference then renders --precision float, with the same bits.
@@ -191,10 +191,10 @@ FLOAT        ?= yes
 NO_FLOAT     := $(if $(FLOAT),,-DGLINT_NO_FLOAT)
 STAGE_OBJ    := $(foreach isa,$(KERNELS),$(STAGES_ONCE:%.c=$(BUILD)/%.$(isa).o) $(foreach real,f64 $(FLOAT:%=f32),$(STAGES_TWICE:%.c=$(BUILD)/%.$(isa).$(real).o)))
 ENGINE_SRC   := $(filter-out $(STAGE_SRC),$(ENGINE_SRC))
-TABLE_OBJ    := $(KERNELS:%=$(BUILD)/engine/stages/simd/table.%.o)
+TABLE_OBJ    := $(KERNELS:%=$(BUILD)/engine/render/stages/simd/table.%.o)
 # without EFFECTS: the objects of a build that leaves them out
-without       = $(filter-out $(foreach effect,$(1),$(BUILD)/engine/effects/$(effect)/%) %/left_out.o,$(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o)) \
-                  $(1:%=$(BUILD)/engine/effects/%/left_out.o)
+without       = $(filter-out $(foreach effect,$(1),$(BUILD)/engine/render/effects/$(effect)/%) %/left_out.o,$(STAGE_OBJ) $(ENGINE_SRC:%.c=$(BUILD)/%.o)) \
+                  $(1:%=$(BUILD)/engine/render/effects/%/left_out.o)
 ENGINE_OBJ   := $(call without,$(LEFT_OUT))
 CORE         := $(BUILD)/without/effects
 CORE_OBJ     := $(filter-out $(TABLE_OBJ),$(call without,$(EFFECTS))) $(KERNELS:%=$(CORE)/table.%.o)
@@ -202,10 +202,10 @@ BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
 TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/engine/test_*.c)))
-TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/gr/codes $(if $(COMMAND_LIBS),$(BUILD)/tests/command/walls)
+TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/command/alone $(BUILD)/tests/gr/codes $(if $(COMMAND_LIBS),$(BUILD)/tests/command/walls)
 HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
 HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/hard/oracle/*.c)))
-KERNEL_OBJ   := $(BUILD)/engine/stages/ref/ref.o $(STAGE_OBJ)
+KERNEL_OBJ   := $(BUILD)/engine/render/stages/ref/ref.o $(STAGE_OBJ)
 
 # ---- Build ----
 
@@ -226,7 +226,7 @@ $(FILLED): $(BUILD)/%: bindings/% bindings/meta/fill.lua $(BUILD)/glint
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a $(if $(filter $(shell uname -m)-%,$(TARGET)),$(FILLED)) ## the command build/glint and the Lua module build/glint.so
 
-# Only kernels are compiled for an instruction set; engine/stages/ref and select.c are not. Processors with AVX2
+# Only kernels are compiled for an instruction set; engine/render/stages/ref and select.c are not. Processors with AVX2
 # also have BMI and POPCNT for masks; select.c checks for all of them.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
 # UBSan cannot look into intrinsics. It checks the stages' sources in the generic kernels; ASan checks both.
@@ -244,18 +244,18 @@ $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$
 $(TABLE_OBJ): OWN = $(call without_kernels,$(LEFT_OUT))
 $(TABLE_OBJ): $(BUILD)/kernels $(BUILD)/effects
 # Some sources need flags of their own.
-UNROLLED := $(addprefix engine/,compare/flip.c frame/stats.c tile/batch.c $(addprefix effects/,adaptive/choose.c bounce/bounce.c \
+UNROLLED := $(addprefix engine/,compare/flip.c render/frame/stats.c render/tile/batch.c $(addprefix render/effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
               indirect/begin.c indirect/indirect.c light_groups/light_groups.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
               transparent_shadow/transparent_shadow.c))
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
 $(UNROLLED:%.c=$(BUILD)/%.o): OWN := $(KERNEL_CFLAGS)
-$(BUILD)/engine/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
-$(BUILD)/engine/stages/simd/select.o: $(BUILD)/kernels
+$(BUILD)/engine/render/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)
+$(BUILD)/engine/render/stages/simd/select.o: $(BUILD)/kernels
 $(BUILD)/libglint.a: $(BUILD)/effects
-$(BUILD)/engine/text/letters.o: OWN := $(FONT_CFLAGS)
-$(BUILD)/engine/file/pdf.o: OWN := $(CAIRO_CFLAGS)
-$(BUILD)/engine/file/jpeg.o: OWN := $(JPEG_CFLAGS)
+$(BUILD)/engine/figures/text/letters.o: OWN := $(FONT_CFLAGS)
+$(BUILD)/engine/files/picture/pdf.o: OWN := $(CAIRO_CFLAGS)
+$(BUILD)/engine/files/picture/jpeg.o: OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 $(BUILD)/bindings/lua/unpack.o: OWN := $(ZSTD_CFLAGS)
@@ -333,7 +333,7 @@ $(BUILD)/flags $(BUILD)/kernels $(BUILD)/effects: FORCE
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(EFFECTS:%=$(BUILD)/engine/effects/%/left_out.d) $(wildcard $(CORE)/*.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(EFFECTS:%=$(BUILD)/engine/render/effects/%/left_out.d) $(wildcard $(CORE)/*.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # An installation may be made from a copy without tests.
 -include tests/tests.mk tests/bench/bench.mk
@@ -362,7 +362,7 @@ LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua sc
 docdir   := $(datadir)/doc/glint
 examples := $(datadir)/glint/examples
 PAGES    := README.md:README.md learn.md:bindings/docs/learn.md how-to.md:bindings/docs/how-to.md explain.md:bindings/docs/explain.md \
-            lua-and-command.md:bindings/README.md engine.md:engine/README.md \
+            lua-and-command.md:bindings/README.md engine.md:engine/README.md renderer.md:engine/render/README.md \
             examples.md:scripts/README.md farms.md:scripts/farm/README.md python.md:scripts/python.md particles.md:scripts/particles.md CHANGELOG.md:.github/CHANGELOG.md
 EXAMPLES := $(sort $(patsubst scripts/%,%,$(wildcard scripts/*.lua scripts/*.c scripts/data/* scripts/farm/*.sh)))
 PICTURES := $(notdir $(wildcard bindings/docs/pictures/*.png))
@@ -376,7 +376,7 @@ $(BUILD)/doc/data.md: scripts/lib/page.awk $(wildcard scripts/lib/glint/*.lua)
 pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	@for page in $(PAGES); do \
 	    case $$page in *:bindings/docs/*) shown= ;; *) shown='s|!\[[^]]*\]([^)]*)||g' ;; esac; \
-	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](\(\.\./\)*engine/README\.md|](engine.md|g' \
+	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](\(\.\./\)*engine/README\.md|](engine.md|g' -e 's|](\(engine/\)*render/README\.md|](renderer.md|g' \
 	        -e 's|](\(bindings/\)*docs/\([a-z-]*\.md\)|](\2|g' -e 's|](\(\.\./\)*scripts/\([a-z]*\.md\)|](\2|g' \
 	        -e 's|](\(\.\./\)*scripts/README\.md|](examples.md|g' -e 's|](\(\.\./\.\./scripts/\)*farm/README\.md|](farms.md|g' \
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \

@@ -143,6 +143,18 @@ size_t glint_scene_light_count(const glint_scene *scene);
 /// Returns an object, `index` < the count, in the order they were added; borrowed from the scene.
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index);
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index);
+
+/// Adds or removes an overlay. A scene draws its overlays in the order they were added, and retains them; an overlay
+/// may be in several scenes. Adding one twice is an error, and so is removing one that is not in the scene.
+glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
+glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
+/// Returns how many overlays the scene has, and one of them, `index` < the count; borrowed from the scene.
+size_t glint_scene_overlay_count(const glint_scene *scene);
+glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index);
+/// Takes another reference to an overlay; returns its argument.
+glint_overlay *glint_overlay_retain(glint_overlay *overlay);
+/// Releases a reference; the last one frees the overlay. NULL: nothing.
+void glint_overlay_release(glint_overlay *overlay);
 /// Writes the name of the light pass that light number `index` < the count belongs to: see glint_render_desc.
 void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE]);
 
@@ -407,17 +419,6 @@ glint_material *glint_material_retain(glint_material *material);
 /// Releases a reference; the last one frees the material. NULL: nothing.
 void glint_material_release(glint_material *material);
 
-/// The two terms of one light of strength 1, from the kernels that a frame uses.
-typedef struct glint_reflection {
-    double diffuse[3]; ///< kd (n.l), 0 where n.l <= 0
-    double specular[3]; ///< ks S, 0 where n.l <= 0
-} glint_reflection;
-
-/// Evaluates a material at a point from its numeric fields; programs are ignored. The three vectors point away from
-/// the surface and need not be unit; finite, not zero.
-glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
-                                     const double to_eye[3], glint_reflection *out, glint_error *error);
-
 // ---- Shapes --------------------------------------------------------------------------------------------------------
 
 /// The kind of a shape. It determines which fields of the description are used.
@@ -617,6 +618,16 @@ glint_mesh_desc glint_mesh_desc_default(void);
 /// expected, got 9", "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle
 /// without area inside a larger face is left out.
 glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
+
+/// Counts of faces that had to be left out or changed.
+typedef struct glint_mesh_faults {
+    size_t flat; ///< faces without an area, which are left out
+    size_t crossed; ///< polygons that cross themselves, which are cut as fans
+} glint_mesh_faults;
+
+/// Makes a mesh of the usable faces, and counts the others instead of failing.
+glint_status glint_mesh_create_counting(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape **out,
+                                        glint_error *error);
 /// Makes a sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole
 /// to pole. The vertices have the sphere's exact normals. `desc` gives shading (default phong), material, sides and
 /// name.

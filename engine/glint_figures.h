@@ -185,63 +185,6 @@ glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay 
 glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error);
 /// Returns the description; borrowed, valid until the overlay is set or released.
 const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay);
-/// Takes another reference; returns its argument.
-glint_overlay *glint_overlay_retain(glint_overlay *overlay);
-/// Releases a reference; the last one frees the overlay. NULL: nothing.
-void glint_overlay_release(glint_overlay *overlay);
-
-// ---- Overlays of a scene -------------------------------------------------------------------------------------------
-
-/// Adds or removes an overlay. A scene draws its overlays in the order they were added, and retains them; an overlay
-/// may be in several scenes. Adding one twice is an error, and so is removing one that is not in the scene.
-glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
-glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
-/// Returns how many overlays the scene has, and one of them, `index` < the count; borrowed from the scene.
-size_t glint_scene_overlay_count(const glint_scene *scene);
-glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index);
-
-/// Calls `warns` for each overlay that the plan's picture cannot show as described: text outside the picture, lines
-/// wider than the picture, letters missing from the font, points behind the camera, an arrow of no length. The
-/// message names the overlay. dpi: pixels per inch of the file; 0: not set.
-glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
-                                       void *context, glint_error *error);
-
-// ---- Contact sheets ------------------------------------------------------------------------------------------------
-
-/// One picture of a contact sheet. Strings are borrowed.
-typedef struct glint_sheet_cell {
-    const char *path; ///< path of a .png or .pfm; all cells have pictures of the same size
-    const char *label; ///< UTF-8, parts separated by newlines, which share a line if they fit; NULL: none
-} glint_sheet_cell;
-
-/// A contact sheet. Pointers are borrowed for the call.
-typedef struct glint_sheet_desc {
-    const glint_sheet_cell *cells; ///< row by row
-    size_t cell_count; ///< >= 1
-    int columns; ///< >= 1
-    const char *title; ///< title of the sheet; NULL: none
-    const char *across, *down; ///< names of the columns and of the rows, at most 1000 bytes each; NULL: none
-    /// Heads: a text above each column, next to each row, and above each block of `block_rows` rows; NULL: none. The
-    /// text above a column has parts like a label
-    const char *const *column_heads, *const *row_heads, *const *block_heads;
-    int block_rows; ///< >= 1 with `block_heads`
-    /// Number of the cell, from 1, that each row is compared with in an extra row below it; 0: no such rows
-    size_t difference;
-    double gain; ///< factor applied to the differences; > 0
-    /// Size of labels, in points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, or 26 below pictures at least 900 wide
-    double size;
-    double dpi; ///< pixels per inch for printing, 0 .. 1e6; 0: not set, and a point is a pixel
-    bool transparent; ///< the paper is transparent; pictures are drawn as on white
-    /// A colour bar for all pictures, to their right, or below them if horizontal; NULL: none. It uses the fields of
-    /// its kind, with `length` in points (default: as long as the pictures together, at most 20 times `size`), and
-    /// the sheet's text size and ink
-    const glint_overlay_desc *colorbar;
-} glint_sheet_desc;
-
-/// Draws finished pictures in rows, with labels, as one 8-bit .png, .svg or .pdf: dark text on white. If a picture is
-/// missing or differs in size from the first, the error names it and the file is unchanged. A row of differences holds
-/// `gain` times |cell - chosen cell|, in 8-bit sRGB values.
-glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -2,7 +2,8 @@
 #ifndef GLINT_FILES_H
 #define GLINT_FILES_H
 
-#include "glint.h"
+#include "glint_figures.h"
+#include "glint_programs.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -261,6 +262,53 @@ glint_status glint_lights_read(const char *path, glint_image **out, glint_error 
 /// Makes a beauty picture in which light pass number i is multiplied by `factors[i]` in each channel; alpha is copied
 /// if there is any. The sum is computed in double in the order of the passes and rounded to float32 once.
 glint_status glint_image_relight(const glint_image *lights, const double (*factors)[3], glint_image **out, glint_error *error);
+
+// ---- Textures ------------------------------------------------------------------------------------------------------
+
+/// Reads a texture from a .png, .hdr or .pfm file, or from a .jpg or .exr file if the build has libjpeg or OpenEXR.
+///
+/// desc  `wrap`, `filter` and `linear`. Files that declare themselves linear (a .png with gAMA 1.0), .hdr, .exr and .pfm
+///       always are.
+///
+/// GLINT_ERR_IO, GLINT_ERR_FORMAT if the file cannot be read or is not a complete picture; GLINT_ERR_NOMEM.
+glint_status glint_texture_read(const char *path, const glint_texture_desc *desc, glint_texture **out, glint_error *error);
+
+// ---- Contact sheets ------------------------------------------------------------------------------------------------
+
+/// One picture of a contact sheet. Strings are borrowed.
+typedef struct glint_sheet_cell {
+    const char *path; ///< path of a .png or .pfm; all cells have pictures of the same size
+    const char *label; ///< UTF-8, parts separated by newlines, which share a line if they fit; NULL: none
+} glint_sheet_cell;
+
+/// A contact sheet. Pointers are borrowed for the call.
+typedef struct glint_sheet_desc {
+    const glint_sheet_cell *cells; ///< row by row
+    size_t cell_count; ///< >= 1
+    int columns; ///< >= 1
+    const char *title; ///< title of the sheet; NULL: none
+    const char *across, *down; ///< names of the columns and of the rows, at most 1000 bytes each; NULL: none
+    /// Heads: a text above each column, next to each row, and above each block of `block_rows` rows; NULL: none. The
+    /// text above a column has parts like a label
+    const char *const *column_heads, *const *row_heads, *const *block_heads;
+    int block_rows; ///< >= 1 with `block_heads`
+    /// Number of the cell, from 1, that each row is compared with in an extra row below it; 0: no such rows
+    size_t difference;
+    double gain; ///< factor applied to the differences; > 0
+    /// Size of labels, in points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, or 26 below pictures at least 900 wide
+    double size;
+    double dpi; ///< pixels per inch for printing, 0 .. 1e6; 0: not set, and a point is a pixel
+    bool transparent; ///< the paper is transparent; pictures are drawn as on white
+    /// A colour bar for all pictures, to their right, or below them if horizontal; NULL: none. It uses the fields of
+    /// its kind, with `length` in points (default: as long as the pictures together, at most 20 times `size`), and
+    /// the sheet's text size and ink
+    const glint_overlay_desc *colorbar;
+} glint_sheet_desc;
+
+/// Draws finished pictures in rows, with labels, as one 8-bit .png, .svg or .pdf: dark text on white. If a picture is
+/// missing or differs in size from the first, the error names it and the file is unchanged. A row of differences holds
+/// `gain` times |cell - chosen cell|, in 8-bit sRGB values.
+glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

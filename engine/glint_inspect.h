@@ -265,6 +265,32 @@ glint_status glint_image_range(const glint_image *image, glint_pass pass, double
 /// does not exceed 1; 0 if `most` is 0. The same on every machine.
 double glint_exposure_for(double most);
 
+// ---- Materials -----------------------------------------------------------------------------------------------------
+
+/// The two terms of one light of strength 1, from the kernels that a frame uses.
+typedef struct glint_reflection {
+    double diffuse[3]; ///< kd (n.l), 0 where n.l <= 0
+    double specular[3]; ///< ks S, 0 where n.l <= 0
+} glint_reflection;
+
+/// Evaluates a material at a point from its numeric fields; programs are ignored. The three vectors point away from
+/// the surface and need not be unit; finite, not zero.
+glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
+                                     const double to_eye[3], glint_reflection *out, glint_error *error);
+
+// ---- What pictures depend on -----------------------------------------------------------------------------------------
+
+/// Writes a hash of everything that the samples of a plan's picture depend on.
+void glint_plan_key(const glint_plan *plan, uint64_t key[2]);
+/// Extends a hash by what else the picture of one pass depends on: overlays, and options of its stages.
+void glint_plan_add_pass_key(const glint_plan *plan, glint_pass pass, uint64_t key[2]);
+
+/// Calls `warns` for each overlay that the plan's picture cannot show as described: text outside the picture, lines
+/// wider than the picture, letters missing from the font, points behind the camera, an arrow of no length. The
+/// message names the overlay. dpi: pixels per inch of the file; 0: not set.
+glint_status glint_plan_check_overlays(const glint_plan *plan, double dpi, void (*warns)(void *context, const char *message),
+                                       void *context, glint_error *error);
+
 #pragma GCC visibility pop
 #ifdef __cplusplus
 }

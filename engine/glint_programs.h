@@ -112,22 +112,25 @@ const glint_program *glint_program_tangent(const glint_program *program, size_t 
 /// back as the same bits. The caller frees the text. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
 
+#define GLINT_TEXELS_MAX ((size_t)1 << 25) ///< most pixels of a texture
+
 /// The fields of a texture.
 typedef struct glint_texture_desc {
-    const char *path; ///< path of a .png, .hdr or .pfm file, or of a .jpg or .exr file if the build has libjpeg or OpenEXR;
-        ///< NULL: `rgb` is the picture
-    const uint8_t *rgb; ///< red, green and blue of each pixel, 8 bits each, top row first; borrowed for the call
-    int width, height; ///< size of `rgb`, pixels, >= 1
+    int width, height; ///< size of the picture, pixels: 1 .. 65535, together at most GLINT_TEXELS_MAX
+    const uint8_t *rgb; ///< red, green and blue of each pixel, 8 bits each, top row first; borrowed for the call. NULL:
+        ///< `row` gives the picture
+    /// Writes the linear red, green, blue and alpha of each pixel of row y, 0 .. 1e30; called once for each row
+    void (*row)(void *context, int y, float *rgba);
+    void *context; ///< passed to `row`
     glint_wrap wrap; ///< default repeat
     glint_filter filter; ///< default bilinear
-    bool linear; ///< true: pixel values are linear. false, the default: they are sRGB and are decoded, unless the
-        ///< file declares itself linear (gAMA 1.0). .hdr, .exr and .pfm are always linear
+    bool linear; ///< true: values of `rgb` are linear. false, the default: they are sRGB and are decoded
 } glint_texture_desc;
 
-/// Returns the defaults: no path, repeat, bilinear, sRGB.
+/// Returns the defaults: no picture, repeat, bilinear, sRGB.
 glint_texture_desc glint_texture_desc_default(void);
-/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT if the file cannot be read or is not a complete picture;
-/// GLINT_ERR_NOMEM.
+/// Makes a texture; glint_texture_read of glint_files.h reads one. GLINT_ERR_INVALID names the field; GLINT_ERR_FORMAT
+/// names a pixel out of its range; GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
 /// Makes a texture that shares the same picture but has another wrap. GLINT_ERR_NOMEM.
 glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,

@@ -1,11 +1,22 @@
--- circles.lua OBJECT...: fails if more than 4 files of the engine call each other in a circle, judged by their symbols.
--- The table of effects (effects/list.c) names all stages so that no other file needs to; its references do not count.
+-- circles.lua OBJECT...: checks who calls whom in the engine, by symbols. Fails if more than 4 files call each other in
+-- a circle, or if a part calls one that it must not know. The table of effects (render/effects/list.c) names all stages
+-- so that no other file needs to; its references do not count.
 local MOST <const> = 4
+
+-- The parts that each part may call. Of the renderer, others call what the public headers declare.
+local KNOWS <const> = {
+    base = {},
+    film = { base = true },
+    render = { base = true, film = true },
+    figures = { base = true, film = true, render = "public" },
+    files = { base = true, film = true, render = "public", figures = true },
+    compare = { base = true, film = true, render = "public", files = true },
+}
 
 local definer, wanted, files = {}, {}, {}
 for _, object in ipairs(arg) do
     local name = object:match("engine/(.*)%.o$")
-    if name and name ~= "effects/list" and not name:find("^stages/") and not name:find("/kernel[^/]*$") then
+    if name and name ~= "render/effects/list" and not name:find("^render/stages/") and not name:find("/kernel[^/]*$") then
         files[#files + 1] = name
         wanted[name] = {}
         local list <close> = assert(io.popen(("nm -g '%s'"):format(object)))
@@ -36,7 +47,28 @@ local function reach(from)
     return found
 end
 
+local public = {}
+for _, header in ipairs { "", "_compare", "_data", "_figures", "_files", "_inspect", "_math", "_programs" } do
+    for line in io.lines("engine/glint" .. header .. ".h") do
+        for symbol in line:gmatch("glint_[%w_]+") do
+            public[symbol] = true
+        end
+    end
+end
+
 local reached, bad, done = {}, false, {}
+for _, file in ipairs(files) do
+    local part = file:match("^[^/]+")
+    for symbol in pairs(wanted[file]) do
+        local other = definer[symbol]
+        local whose = other and other:match("^[^/]+")
+        local known = whose and (whose == part or KNOWS[part][whose])
+        if whose and not (known == true or known == "public" and public[symbol]) then
+            print(("%s calls %s of %s, which %s does not know"):format(file, symbol, other, part))
+            bad = true
+        end
+    end
+end
 for _, file in ipairs(files) do
     reached[file] = reach(file)
 end

@@ -1,7 +1,8 @@
 #!/bin/sh
-# Dependencies go one way: scripts -> bindings -> engine -> engine/stages -> engine/base. Each folder includes its own
-# headers and the headers of the folders named here. All may include the renderer's public headers; the other public
-# headers are named. The kernels of an effect, with their contract and reference, follow the rules of engine/stages.
+# Dependencies go one way: scripts -> bindings -> engine. In the engine, base and film are known to all; the renderer
+# (engine/render) knows only them. Figures, files and comparison know the renderer by its public headers alone; files
+# draw figures; nobody knows files but the comparison. Each folder includes its own headers and the headers of the
+# folders named here. The kernels of an effect, with their contract and reference, follow the rules of the stages.
 set -u
 bad=0
 
@@ -33,32 +34,39 @@ layer() {
 }
 
 base=engine/base
-stages='engine/stages engine/stages/simd'
-layer engine/base
-layer engine/data engine/glint_data.h $base
-layer engine/scene 'engine/glint_(files|figures).h' engine/data engine/stages $base
-layer engine/geometry engine/scene engine/stages $base
-layer engine/text $base
-figures=engine/glint_figures.h
-layer engine/ink $figures engine/text $base
-layer engine/overlay $figures engine/ink engine/text $base
-layer engine/film engine/glint_files.h engine/overlay engine/stages $base
-layer engine/program engine/file $stages $base
+film=engine/film
+render=engine/render
+stages="$render/stages $render/stages/simd"
+layer $base
+layer $film $base
+
+# ---- The renderer ----
+layer $render/scene $render/stages $base
+layer $render/geometry $render/scene $render/stages $base
+layer $render/program $film $stages $base
 # An effect's plan.h belongs to the plan; its other headers belong to tile rendering and to the frame around it.
-effects='engine/effects/[a-z_]*'
-for files in 'engine/plan/*.[ch]' 'engine/effects/*/plan*.[ch]' 'engine/effects/derivative/slopes.h'; do
-    includes "$files" engine/glint_files.h engine/plan engine/effects "$effects/(plan|slopes).h" engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
+effects="$render/effects/[a-z_]*"
+for files in "$render/plan/*.[ch]" "$render/effects/*/plan*.[ch]" $render/effects/derivative/slopes.h; do
+    includes "$files" $render/plan $render/effects "$effects/(plan|slopes).h" $render/program $render/geometry $render/scene $film $stages $base
 done
-layer engine/reuse "$effects/plan.h" engine/program engine/plan engine/film $stages $base
-layer engine/tile "$effects" engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
-layer engine/frame "$effects" engine/program engine/tile engine/reuse engine/plan engine/overlay engine/film $base
-kernels=$(find engine/effects -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')
-includes "engine/stages/*.h engine/stages/*/*.[ch] $kernels" 'engine/stages(/[a-z]*)?' "$effects/(contract|kernel_[a-z]*|ref|ref_[a-z]*).h" $base
-includes "$(find engine/effects/*/ -name '*.[ch]' | grep -vxF "$kernels")" "$effects" engine/effects engine/frame engine/tile engine/program \
-    engine/reuse engine/plan engine/geometry engine/scene engine/film $stages engine/stages/light $base
-layer engine/file engine/glint_files.h engine/ink engine/text engine/overlay engine/film engine/stages $base
-layer engine/compare 'engine/glint_(files|compare).h' engine/file engine/film $base
-layer engine/sheet $figures engine/ink engine/text engine/overlay engine/file $base
+layer $render/reuse "$effects/plan.h" $render/program $render/plan $film $stages $base
+layer $render/tile "$effects" $render/program $render/reuse $render/plan $film $stages $render/stages/light $base
+layer $render/frame "$effects" $render/program $render/tile $render/reuse $render/plan $film $stages $base
+kernels=$(find $render/effects -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')
+includes "$render/stages/*.h $render/stages/*/*.[ch] $kernels" "$render/stages(/[a-z]*)?" "$effects/(contract|kernel_[a-z]*|ref|ref_[a-z]*).h" $film/codes.h $base
+includes "$(find $render/effects/*/ -name '*.[ch]' | grep -vxF "$kernels")" "$effects" $render/effects $render/frame $render/tile $render/program \
+    $render/reuse $render/plan $render/geometry $render/scene $film $stages $render/stages/light $base
+
+# ---- Around it ----
+figures='engine/glint_figures.h'
+layer engine/figures/text $base
+layer engine/figures/ink $figures engine/figures/text $film $base
+layer engine/figures/overlay $figures engine/figures/ink engine/figures/text $film $base
+layer engine/files/data engine/glint_data.h $base
+layer engine/files/mesh engine/glint_files.h $base
+layer engine/files/picture engine/glint_files.h engine/figures/ink engine/figures/text engine/figures/overlay $film $base
+layer engine/files/sheet engine/glint_files.h engine/figures/ink engine/figures/text engine/figures/overlay engine/files/picture $base
+layer engine/compare 'engine/glint_(files|compare).h' engine/files/picture $film $base
 
 public='engine/glint_(files|figures|compare|data).h'
 layer bindings/value "$public"
@@ -72,6 +80,6 @@ layer bindings/relight "$public" bindings/command bindings/run
 
 scene='glint_(scene|material|light|camera|shape|plan|renderer|image)(_desc)?'
 forbid engine '[<"](lua|lauxlib|lualib)\.h|\blua_State\b' 'the engine has never heard of Lua'
-forbid "engine/stages $kernels" "\\b$scene\\b" 'kernels take plain arrays, not scenes'
-forbid "engine/stages $kernels" '#include "engine/glint[^_]' 'kernels know nothing of the public interface but glint_math.h'
+forbid "$render/stages $kernels" "\\b$scene\\b" 'kernels take plain arrays, not scenes'
+forbid "$render/stages $kernels" '#include "engine/glint[^_]' 'kernels know nothing of the public interface but glint_math.h'
 exit $bad

@@ -13,6 +13,13 @@ $(BUILD)/tests/command/walls: tests/command/walls.c $(BUILD)/bindings/command/wa
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -MMD -MP $< $(BUILD)/bindings/command/walls.o $(LINK) $(LIBS) $(COMMAND_LIBS) -o $@
 
+# The renderer, without any other part of the engine and without libraries.
+RENDERER_OBJ := $(filter $(addprefix $(BUILD)/engine/,base/% film/% render/%),$(ENGINE_OBJ))
+$(BUILD)/tests/command/alone: tests/command/alone.c $(RENDERER_OBJ)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(RENDERER_OBJ) $(LINK) -lm $(PTHREAD) -o $@
+
 $(HARD_OBJ): OWN := -D_GNU_SOURCE # arithmetic in _Float128
 # The hard cases: each hard_*.c is a program; the other files are shared. They use only the public API.
 $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
@@ -21,7 +28,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	$(Q)$(CC) $(COMPILE) -D_GNU_SOURCE -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
 # The command without effects, of the same objects, except the tables of kernels.
-$(KERNELS:%=$(CORE)/table.%.o): $(CORE)/table.%.o: engine/stages/simd/table.c $(BUILD)/flags $(BUILD)/kernels
+$(KERNELS:%=$(CORE)/table.%.o): $(CORE)/table.%.o: engine/render/stages/simd/table.c $(BUILD)/flags $(BUILD)/kernels
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(PLAIN) -DGLINT_ISA=$* $(NO_FLOAT) $(call without_kernels,$(EFFECTS)) -MMD -MP -c $< -o $@
@@ -34,7 +41,7 @@ $(CORE)/glint: $(BINDINGS_OBJ) $(CORE_OBJ)
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN) $(CORE)/glint
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion denoise effects exposure faults films gallery golden inputs install kills left_out memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
+              $(addprefix tests/command/,$(addsuffix .sh,alone cli completion denoise effects exposure faults films gallery golden inputs install kills left_out memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -98,12 +105,12 @@ check-rock: ## the rock of make dist into a folder of its own; installs luarocks
 PORTABLE_MAKE  := $(MAKE) --no-print-directory BUILD=build-portable PORTABLE=1 have= CFLAGS="-O0 -Werror" KERNEL_CFLAGS="-O1 -Werror"
 PORTABLE_TESTS := $(addprefix $(BUILD)/tests/engine/test_,bands carry_turns deflate files image open picture reuse_turns) \
                     $(addprefix tests/lua/test_,$(addsuffix .lua,api data mesh_files)) \
-                    $(addprefix tests/command/,$(addsuffix .sh,cli completion films golden inputs install kills parts watch))
+                    $(addprefix tests/command/,$(addsuffix .sh,alone cli completion films golden inputs install kills parts watch))
 
 CLANG_MAKE  := $(MAKE) --no-print-directory BUILD=build-clang CC=clang CFLAGS="-O2 -g -Werror"
 CLANG_TESTS := $(filter $(BUILD)/tests/engine/test_stages_%,$(TEST_BIN)) \
                  $(addprefix $(BUILD)/tests/engine/test_,caps files lattice leaf math program program_math reuse tone) \
-                 $(addprefix tests/command/,$(addsuffix .sh,cli golden))
+                 $(addprefix tests/command/,$(addsuffix .sh,alone cli golden))
 
 .PHONY: check-portable check-portable-run check-clang check-clang-run
 check-portable: ## PORTABLE=1 at -O0 without any optional library: files, folders, watch, runs, installation

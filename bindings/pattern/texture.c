@@ -68,10 +68,9 @@ static int new_texture(lua_State *L)
     lua_settop(L, 1);
     glintL_read_table(L, 1, "texture", FIELDS, &a, false);
     read_file(L, a.file);
-    a.desc.path = a.file;
     a.desc.linear = a.transfer == 1;
     glintL_pattern *pattern = glintL_push_pattern(L, GLINT_PROGRAM_PATTERN, GLINTL_TEXTURE);
-    glintL_check_status(L, "", &error, glint_texture_create(&a.desc, &pattern->texture, &error));
+    glintL_check_status(L, "", &error, glint_texture_read(a.file, &a.desc, &pattern->texture, &error));
     keep_fields(L, &a, pattern->texture);
     glintL_charge(L,
                   (size_t)glint_texture_width(pattern->texture) * (size_t)glint_texture_height(pattern->texture) * 8);

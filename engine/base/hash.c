@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#define XXH_INLINE_ALL // the renderer needs no library but C's
 #include <xxhash.h>
 
 glint_key glint_key_add(glint_key key, const void *bytes, size_t size)

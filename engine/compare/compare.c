@@ -1,9 +1,9 @@
 /// Differences between two pictures, with the statistics of OpenImageIO's idiff.
 #include "engine/base/status.h"
-#include "engine/file/file.h"
-#include "engine/file/pfm.h"
-#include "engine/file/png.h"
-#include "engine/file/write.h"
+#include "engine/files/picture/file.h"
+#include "engine/files/picture/pfm.h"
+#include "engine/files/picture/png.h"
+#include "engine/files/picture/write.h"
 #include "engine/glint_compare.h"
 #include "engine/glint_math.h"
 

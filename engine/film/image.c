@@ -210,7 +210,7 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
     return GLINT_OK;
 }
 
-glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int x, int y, glint_image **out,
+glint_status glint_image_cover(glint_image *under, glint_cover *cover, int x, int y, glint_image **out,
                                glint_error *error)
 {
     glint_image *image = calloc(1, sizeof *image);
@@ -233,7 +233,7 @@ glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int
     image->exposure = under->exposure;
     image->row_stamp = under->row_stamp;
     image->under = under;
-    image->overlays = glint_overlays_retain(overlays);
+    image->cover = glint_cover_retain(cover);
     image->part_x = x;
     image->part_y = y;
     *out = image;
@@ -285,7 +285,7 @@ void glint_image_release(glint_image *image)
 {
     if (!image || atomic_fetch_sub_explicit(&image->references, 1, memory_order_acq_rel) != 1)
         return;
-    glint_overlays_release(image->overlays);
+    glint_cover_release(image->cover);
     if (image->under) {
         glint_image_release(image->under);
         free(image);

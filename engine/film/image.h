@@ -3,10 +3,10 @@
 #define GLINT_IMAGE_IMAGE_H
 
 #include "engine/base/hash.h"
+#include "engine/film/codes.h"
+#include "engine/film/cover.h"
 #include "engine/glint.h"
 #include "engine/glint_programs.h"
-#include "engine/overlay/overlay.h"
-#include "engine/stages/stages.h"
 
 #include <stdatomic.h>
 
@@ -45,7 +45,7 @@ struct glint_image {
     uint64_t *row_stamp; ///< one stamp for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal
         ///< stamps in two images of one size and tone mean equal codes in these rows; 0: unknown
     glint_image *under; ///< the image without overlays, whose planes and codes this one shares; NULL: none. Owned
-    glint_overlays *overlays; ///< overlays to draw over beauty in a PNG; NULL: none. Owned
+    glint_cover *cover; ///< overlays to draw over beauty in a PNG; NULL: none. Owned
     int part_x, part_y; ///< position of the first pixel in the whole picture, for the overlays
 };
 
@@ -100,7 +100,7 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
 
 /// Makes an image of the same picture with overlays, and retains the overlays. x, y: position of the first pixel in the
 /// whole picture. Takes over the reference to `under`, on error too.
-glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int x, int y, glint_image **out,
+glint_status glint_image_cover(glint_image *under, glint_cover *cover, int x, int y, glint_image **out,
                                glint_error *error);
 
 /// Returns the bytes of one pixel's codes.

@@ -1,4 +1,5 @@
 #include "engine/film/tone.h"
+#include "engine/glint_math.h"
 
 #include "engine/base/status.h"
 

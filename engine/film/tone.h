@@ -2,16 +2,16 @@
 #ifndef GLINT_IMAGE_TONE_H
 #define GLINT_IMAGE_TONE_H
 
+#include "engine/film/codes.h"
 #include "engine/glint.h"
-#include "engine/stages/stages.h"
 
 #define GLINT_TONE16_FIRST 0x3500u ///< upper 16 bits of the float 2^-21; smaller floats have code 0 at 16 bits
 
 /// The codes of one curve, for light after exposure.
 typedef struct glint_tone_table {
     glint_tone_desc desc; ///< with exposure 0
-    float white, top; ///< as in glint_tone_args
-    uint32_t *lut; ///< 8 bits: the table of the tone stage, see stages.h
+    float white, top; ///< light above `white` is clipped; light above `top` (at most `white`) gets the value of `top`
+    uint32_t *lut; ///< 8 bits: see codes.h
     bool has_fit; ///< 8 bits: whether the fit of the tone stage exists, which only the curve `clamp` has
     glint_tone_fit fit; ///< the fit, if `has_fit`
     float *threshold; ///< 16 bits: [k] is the first float of code k, k = 0 .. 65535, then +inf

@@ -2,7 +2,7 @@
 /// results as reflectances.
 #include <string.h>
 
-#include "engine/program/program.h"
+#include "engine/render/program/program.h"
 #include "tests/bench/glint_side.h"
 #include "tests/bench/program_points.h"
 

@@ -1,7 +1,7 @@
 /// Phong by hand, with the arithmetic of a shader's program: doubles, eight per vector, and the highlight in float
 /// with the engine's polynomials, so that both programs are right to seven digits. Everything stays in registers from
 /// the first load to the store, and products and sums are fused.
-#include "engine/stages/simd/coefficients.h"
+#include "engine/render/stages/simd/coefficients.h"
 #include "tests/bench/hand_program.h"
 #include "tests/bench/options.h"
 #include "tests/bench/program_points.h"

@@ -160,7 +160,7 @@ check "has the same pixels" "$prefix/bin/glint" compare "$work/c_example.png" "$
 
 # Objects are identical wherever they are built: they do not contain the build folder, not even in debug information.
 check "the folder of the build is in no object" eval '! grep -qF "$root/" "$build/glint" "$build/glint.so" "$build/libglint.a"'
-objects="build/engine/base/pool.o build/engine/file/png.o build/bindings/command/output.o build/libglint.map"
+objects="build/engine/base/pool.o build/engine/files/picture/png.o build/bindings/command/output.o build/libglint.map"
 for folder in one another/folder; do
     mkdir -p "$work/$folder" && cp -r Makefile engine bindings scripts "$work/$folder/"
     mkdir "$work/$folder/tests" && cp tests/deps.sh "$work/$folder/tests/"

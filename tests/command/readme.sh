@@ -93,7 +93,7 @@ check_paths() {
     done
 }
 
-for page in README.md bindings/README.md engine/README.md engine/stages/README.md tests/README.md scripts/README.md \
+for page in README.md bindings/README.md engine/README.md engine/*/README.md engine/render/stages/README.md tests/README.md scripts/README.md \
     scripts/python.md scripts/particles.md .github/CONTRIBUTING.md bindings/docs/*.md; do
     run_page "$page"
     case $page in bindings/docs/*) check_pictures "$page" ;; esac

@@ -1,6 +1,6 @@
 --- The effects that a scene can use, one row each:
 ---   name       value of the parameter `effect` in scene.lua
----   part       in engine/stages/contract/with.h, omitted in a build without the effect; nil: it has no own kernel
+---   part       in engine/render/stages/contract/with.h, omitted in a build without the effect; nil: it has no own kernel
 ---   stage, rays    its counter: the stage's name or the kind of ray in the events of --json;
 ---              nil: it has none
 ---   functions  Lua patterns of its functions' names; the effect calls at least one. {}: part of shared functions

@@ -2,6 +2,7 @@
 // the planes. Crops and black pictures are compared with the planes of the whole image.
 #include "tests/engine/cases/image_case.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 #define WIDTH 37

@@ -2,7 +2,7 @@
 #include "tests/engine/cases/image_case.h"
 #include "tests/engine/cases/random.h"
 
-#include "engine/file/write.h"
+#include "engine/files/picture/write.h"
 
 #include <malloc.h>
 

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "engine/geometry/bvh.h"
+#include "engine/render/geometry/bvh.h"
 
 // ---- Allocations that fail ----
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "engine/plan/plan.h"
+#include "engine/render/plan/plan.h"
 
 /// A rotation with rational entries: x to the right, y down, z away from the eye.
 static const double ROTATION[3][3] = { { 0.8, 0, -0.6 }, { 0.36, 0.8, 0.48 }, { 0.48, -0.6, 0.64 } };

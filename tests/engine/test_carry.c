@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "engine/film/image.h"
-#include "engine/reuse/between.h"
+#include "engine/render/reuse/between.h"
 #include "tests/engine/cases/random.h"
 
 enum { SHAPES = 24, MATERIALS = 5, LIGHTS = 3, WORLDS = 20, EDITS = 20 };

@@ -1,8 +1,8 @@
 /// Charts: positions of curves, numbers and labels, as marks on a page.
 #include "tests/engine/cases/image_case.h"
 
-#include "engine/ink/ink.h"
-#include "engine/overlay/overlay.h"
+#include "engine/figures/ink/ink.h"
+#include "engine/figures/overlay/overlay.h"
 
 #include <math.h>
 

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "engine/file/deflate.c" // included as source, because the tests call its static functions
+#include "engine/files/picture/deflate.c" // included as source, because the tests call its static functions
 
 #ifdef BUCKET_BITS // deflate.c defines it where the address matters and can be chosen
 #define OTHER_PLACES 32768 // enough addresses to use each bucket about four times

@@ -3,9 +3,9 @@
 
 #include <png.h>
 
-#include "engine/file/pfm.h"
-#include "engine/ink/stamps.h"
-#include "engine/text/font.h"
+#include "engine/figures/ink/stamps.h"
+#include "engine/figures/text/font.h"
+#include "engine/files/picture/pfm.h"
 
 // ---- Drafts -------------------------------------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/text/line.h"
+#include "engine/figures/text/line.h"
 
 #define EM 130.0
 #define LETTER 80.0

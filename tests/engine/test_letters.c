@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/text/line.h"
+#include "engine/figures/text/line.h"
 
 static glint_letters *open_font(void)
 {

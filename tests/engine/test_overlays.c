@@ -3,8 +3,8 @@
 #include "engine/glint_inspect.h"
 #include "tests/engine/cases/image_case.h"
 
-#include "engine/overlay/overlay.h"
-#include "engine/text/font.h"
+#include "engine/figures/overlay/overlay.h"
+#include "engine/figures/text/font.h"
 
 #define WIDTH 160
 #define HEIGHT 120

@@ -6,8 +6,8 @@
 
 #include "engine/base/vec.h"
 #include "engine/film/image.h"
-#include "engine/plan/plan.h"
-#include "engine/stages/stages.h"
+#include "engine/render/plan/plan.h"
+#include "engine/render/stages/stages.h"
 #include "tests/engine/cases/builder_case.h"
 #include "tests/engine/cases/random.h"
 

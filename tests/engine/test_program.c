@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/program/builder.h"
+#include "engine/render/program/builder.h"
 
 static glint_error error;
 

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/program/builder.h"
+#include "engine/render/program/builder.h"
 #include "tests/engine/cases/random.h"
 
 typedef int mpfr_function(mpfr_t, mpfr_srcptr, mpfr_srcptr, mpfr_rnd_t);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/program/builder.h"
+#include "engine/render/program/builder.h"
 #include "tests/engine/cases/random.h"
 
 static void pattern_at(glint_op op, double x, double y, double z, double results[GLINT_RESULTS_MAX])

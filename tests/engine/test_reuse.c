@@ -13,8 +13,8 @@
 
 #include "engine/base/alloc.h"
 #include "engine/film/image.h"
-#include "engine/stages/stages.h"
-#include "engine/tile/tile.h"
+#include "engine/render/stages/stages.h"
+#include "engine/render/tile/tile.h"
 #include "tests/engine/cases/step.h"
 
 #define SHAPES 7

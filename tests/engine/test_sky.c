@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "engine/base/sequence.h"
-#include "engine/effects/environment/plan.h"
-#include "engine/effects/environment/sky.h"
-#include "engine/program/program.h"
+#include "engine/render/effects/environment/plan.h"
+#include "engine/render/effects/environment/sky.h"
+#include "engine/render/program/program.h"
 #include "tests/engine/cases/builder_case.h"
 
 #define PI 3.14159265358979323846

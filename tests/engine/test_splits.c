@@ -1,8 +1,8 @@
 /// Programs in two parts, and frames in which constants of programs change:
 /// cached values give the same bits as a fresh frame.
-#include "engine/program/split.h"
 #include "engine/film/image.h"
-#include "engine/frame/renderer.h"
+#include "engine/render/frame/renderer.h"
+#include "engine/render/program/split.h"
 #include "tests/engine/cases/program_case.h"
 
 #include "tests/engine/cases/builder_case.h"

@@ -1,6 +1,6 @@
 /// occlude and soft_light on every instruction set against the scalar reference, which tests every primitive for
 /// every point: neither the BVH, nor a tile's list of occluders, nor a filter loses or adds a shadow.
-#include "engine/geometry/geometry.h"
+#include "engine/render/geometry/geometry.h"
 #include "tests/engine/cases/stage_scene.h"
 
 enum { CASES = 3000 };

@@ -1,5 +1,6 @@
 /// The stage `program`: every operation and thousands of random programs on every instruction set against the scalar
 /// reference, and built programs against the same programs without folding, sharing or fusing.
+#include "engine/glint_files.h"
 #include "tests/engine/png_case.h"
 #include "tests/engine/cases/program_case.h"
 
@@ -453,10 +454,9 @@ static void load_texture(glint_wrap wrap, glint_filter filter)
     for (size_t i = 0; i < COUNT_OF(samples); i++)
         samples[i] = (uint16_t)random_bits();
     write_png(path, 37, 21, PNG_COLOR_TYPE_RGB_ALPHA, 16, 0, samples);
-    desc.path = path;
     desc.wrap = wrap;
     desc.filter = filter;
-    if (glint_texture_create(&desc, &recipe_texture, &error))
+    if (glint_texture_read(path, &desc, &recipe_texture, &error))
         fail_msg("%s", error.message);
     remove(path);
 }

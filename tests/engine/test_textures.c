@@ -9,7 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "engine/program/builder.h"
+#include "engine/glint_files.h"
+#include "engine/render/program/builder.h"
 #include "tests/engine/png_case.h"
 #include "tests/engine/cases/random.h"
 
@@ -20,11 +21,10 @@ static glint_texture *load(glint_wrap wrap, glint_filter filter, bool linear)
 {
     glint_texture *texture;
     glint_texture_desc desc = glint_texture_desc_default();
-    desc.path = path;
     desc.wrap = wrap;
     desc.filter = filter;
     desc.linear = linear;
-    if (glint_texture_create(&desc, &texture, &error))
+    if (glint_texture_read(path, &desc, &texture, &error))
         fail_msg("%s", error.message);
     return texture;
 }
@@ -81,7 +81,7 @@ static void test_memory(void **state)
     for (int side = -1; side < 2; side++) {
         desc.width = desc.height = side < 0 ? 70000 : side;
         assert_int_equal(glint_texture_create(&desc, &t, &error), side < 1 ? GLINT_ERR_INVALID : GLINT_OK);
-        assert_true(side == 1 || strstr(error.message, "rgb: a picture of at most"));
+        assert_true(side == 1 || strstr(error.message, "a picture of at most"));
     }
     glint_texture_release(t);
     desc.width = desc.height = 2;
@@ -93,7 +93,7 @@ static void test_memory(void **state)
     glint_texture_release(t);
     desc.rgb = NULL;
     assert_int_equal(glint_texture_create(&desc, &t, &error), GLINT_ERR_INVALID);
-    assert_string_equal(error.message, "path: name of a .png expected");
+    assert_string_equal(error.message, "rgb, row: one of them expected");
 }
 
 static void test_codes(void **state)
@@ -231,8 +231,7 @@ static void expect_failure(glint_status want, const char *part)
 {
     glint_texture *texture;
     glint_texture_desc desc = glint_texture_desc_default();
-    desc.path = path;
-    assert_int_equal(glint_texture_create(&desc, &texture, &error), want);
+    assert_int_equal(glint_texture_read(path, &desc, &texture, &error), want);
     if (!strstr(error.message, part) || !strstr(error.message, path))
         fail_msg("'%s' has no '%s'", error.message, part);
 }
@@ -258,7 +257,9 @@ static void test_files(void **state)
     glint_texture *texture;
     glint_texture_desc desc = glint_texture_desc_default();
     assert_int_equal(glint_texture_create(&desc, &texture, &error), GLINT_ERR_INVALID);
-    desc.path = path;
+    static const uint8_t rgb[3];
+    desc.width = desc.height = 1;
+    desc.rgb = rgb;
     desc.wrap = (glint_wrap)3;
     assert_int_equal(glint_texture_create(&desc, &texture, &error), GLINT_ERR_INVALID);
     glint_texture_release(NULL);

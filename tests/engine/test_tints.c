@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "engine/base/vec.h"
-#include "engine/effects/transparent_shadow/plan.h"
+#include "engine/render/effects/transparent_shadow/plan.h"
 
 static uint64_t state = 1;
 

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "engine/film/tone.h"
-#include "engine/stages/stages.h"
+#include "engine/render/stages/stages.h"
 #include "tests/engine/cases/random.h"
 
 #define ALIGNED _Alignas(64)

@@ -1,6 +1,6 @@
 /// The bytes are a text with formulas. A text that glint_line_check accepts has the same runs in every font; its lines
 /// are measured and drawn, and all positions are finite.
-#include "engine/text/line.h"
+#include "engine/figures/text/line.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
 /// its decoder, other bytes to the PFM reader. If both PNG readers accept the data, they report the same size, and all
 /// decoded pixel values are present. No value of a Radiance picture is negative or NaN. A PFM is unchanged after
 /// writing and reading it again.
-#include "engine/file/hdr.h"
-#include "engine/file/pfm.h"
-#include "engine/file/png.h"
+#include "engine/files/picture/hdr.h"
+#include "engine/files/picture/pfm.h"
+#include "engine/files/picture/png.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <math.h>

@@ -51,7 +51,7 @@ static const number numbers[] = {
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
-/// Maps a pixel's sample to a round lens of radius 1, by the formula of engine/plan/lens.c.
+/// Maps a pixel's sample to a round lens of radius 1, by the formula of engine/render/plan/lens.c.
 static void lens_point(int x, int y, quad out[2])
 {
     double square[2];

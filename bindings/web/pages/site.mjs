@@ -18,6 +18,7 @@ const pages = [
   { to: "gallery.html", from: "scripts/README.md", title: "Gallery" },
   { to: "about.html", from: "README.md", title: "About" },
   { to: "engine.html", from: "engine/README.md", title: "The engine" },
+  { to: "renderer.html", from: "engine/render/README.md", title: "The renderer" },
   { to: "python.html", from: "scripts/python.md", title: "Pictures in Python" },
   { to: "particles.html", from: "scripts/particles.md", title: "Particles" },
   { to: "farms.html", from: "scripts/farm/README.md", title: "Farms" },

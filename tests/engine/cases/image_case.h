@@ -17,9 +17,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "engine/file/file.h"
+#include "engine/files/picture/file.h"
+#include "engine/files/picture/png.h"
 #include "engine/film/image.h"
-#include "engine/file/png.h"
 #include "engine/film/tone.h"
 
 #define KEY "0123456789abcdef0123456789abcdef"

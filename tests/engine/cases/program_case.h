@@ -3,7 +3,7 @@
 #ifndef GLINT_PROGRAM_CASE_H
 #define GLINT_PROGRAM_CASE_H
 
-#include "engine/program/builder.h"
+#include "engine/render/program/builder.h"
 #include "tests/engine/cases/stage_case.h"
 
 enum { RECIPE_STEPS = 60 };

@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "engine/glint.h"
-#include "engine/stages/stages.h"
+#include "engine/render/stages/stages.h"
 #include "tests/engine/cases/random.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])

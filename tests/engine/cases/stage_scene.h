@@ -4,7 +4,7 @@
 #ifndef GLINT_STAGE_SCENE_H
 #define GLINT_STAGE_SCENE_H
 
-#include "engine/geometry/bvh.h"
+#include "engine/render/geometry/bvh.h"
 #include "tests/engine/cases/stage_case.h"
 
 enum { MOST_PRIMS = 3000, MOST_LINES = 256 };

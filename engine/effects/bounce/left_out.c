@@ -1,4 +1,0 @@
-#include "engine/effects/bounce/plan.h"
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(bounce, "bounce", "material", "mirrors and transparent materials", glint_bounce_is_needed(plan))

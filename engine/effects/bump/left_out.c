@@ -1,3 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(bump, "bump", "material.bump", "bumps", glint_plan_bumps(plan))

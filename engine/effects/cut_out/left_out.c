@@ -1,3 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(cut_out, "cut_out", "material.opacity", "cut-outs", glint_plan_cuts(plan))

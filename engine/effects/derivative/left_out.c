@@ -1,3 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(derivative, "derivative", "derivatives", "derivatives", from->desc->derivative_count > 0)

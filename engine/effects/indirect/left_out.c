@@ -1,3 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(indirect, "indirect", "scene", "indirect light and ambient occlusion", glint_plan_has_indirect(&from->scene->desc))

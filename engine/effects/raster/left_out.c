@@ -1,3 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(raster, "raster", "visibility", "scan conversion", plan->desc.visibility == GLINT_VISIBILITY_SCAN)

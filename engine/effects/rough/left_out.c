@@ -1,3 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(rough, "rough", "material.roughness", "rays of rough surfaces", plan->rough_samples > 0)

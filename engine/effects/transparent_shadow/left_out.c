@@ -1,4 +1,0 @@
-#include "engine/effects/left_out.h"
-
-GLINT_LEFT_OUT(tint, "transparent_shadow", "material", "light through transparent objects",
-               (plan->transmits || plan->clears) && plan->shadow_count > 0)

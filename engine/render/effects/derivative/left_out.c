@@ -1,0 +1,3 @@
+#include "engine/render/effects/left_out.h"
+
+GLINT_LEFT_OUT(derivative, "derivative", "derivatives", "derivatives", from->desc->derivative_count > 0)

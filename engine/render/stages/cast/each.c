@@ -1,0 +1,52 @@
+// Hits of individual rays, which need not be coherent.
+#include "engine/render/stages/cast/parallel.h"
+#include "engine/render/stages/cast/rays.h"
+#include "engine/render/stages/cast/together.h"
+
+/// Casts in a scene with many primitives.
+static void R(cast_many_rays)(const glint_cast_args *args)
+{
+    _Alignas(64) float local[3][GLINT_GROUP];
+    R(ray_group) rays;
+    R(lone_rays) lone;
+    R(ray_pairs) pairs = { .count = 0 };
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        if (!R(begin_rays)(args, g, local, &rays))
+            continue;
+        R(load_lone_rays)(&rays, &lone);
+        const unsigned usual = GLINT_REAL == 64 ? lone.usual : 0;
+        if (args->active[g] & usual)
+            R(walk_rays)(args, g, &rays, &lone, args->active[g] & usual, &pairs);
+        for (unsigned lanes = args->active[g] & ~usual; lanes; lanes &= lanes - 1)
+            R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
+    }
+    R(decide_ray_pairs)(args, &pairs);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        if (pairs.undecided[g])
+            R(make_ray_group)(args, g, local, &rays);
+        for (unsigned lanes = pairs.undecided[g]; lanes; lanes &= lanes - 1)
+            R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
+        R(finish_group)(args, g);
+    }
+}
+
+static void R(cast_rays)(const glint_cast_args *args)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    _Alignas(64) float local[3][GLINT_GROUP];
+    R(ray_group) rays;
+    if (geometry->nodes && R(is_beam)(args->camera)) {
+        R(cast_parallel)(args);
+    } else if (geometry->nodes && geometry->prim_count > GLINT_FEW) {
+        R(cast_many_rays)(args);
+    } else if (geometry->nodes) {
+        R(cast_few_rays)(args);
+    } else {
+        for (uint32_t g = 0; g < args->group_count; g++) {
+            R(begin_rays)(args, g, local, &rays);
+            R(finish_group)(args, g);
+        }
+    }
+}
+
+KERNEL(cast_rays, glint_cast_args)

@@ -1,4 +1,0 @@
-// 8-bit pixel values.
-#include "engine/stages/film/tone.h"
-
-KERNEL(tone, glint_tone_args)
