@@ -25,6 +25,11 @@ local function read_part(my, name)
   return program and (read(program .. "web/" .. name) or read(program .. "../share/glint/web/" .. name))
 end
 
+-- Returns a title for a script without one: "phong_lobe.lua" gives "Phong lobe".
+local function title_of(script)
+  return (script:gsub("%.lua$", ""):gsub("[_-]+", " "):gsub("^%l", string.upper))
+end
+
 -- Reads the engine for pages, renders the frame, and reads the script's files.
 local function make_page(my)
   local wasm, engine = read_part(my, "glint.wasm.gz"), read_part(my, "publish.js")
@@ -33,6 +38,7 @@ local function make_page(my)
       .. "build/glint, or install glint again", 0)
   end
   local page = my.render()
+  page.title = page.title or title_of(page.script)
   page.wasm, page.engine, page.source = wasm, engine, must_read(page.path)
   page.folder = page.path:match "^.*/" or ""
   for name, path in pairs(page.files) do page.files[name] = must_read(path) end
@@ -52,8 +58,10 @@ local function json(value)
   return "{" .. table.concat(list, ",") .. "}"
 end
 
--- Escapes "<", so that no text can end its script element.
-local function embedded(value) return (json(value):gsub("<", "\\u003c")) end
+-- Returns the JSON of a job and of its parameters, with "<" escaped, so that no text can end its script element.
+local function embedded(job, params)
+  return (('{"params":' .. params .. "," .. json(job):sub(2)):gsub("<", "\\u003c"))
+end
 
 -- Returns the values of --set that differ from the script's own.
 local function values_of(params)
@@ -117,9 +125,9 @@ local function figure_of(page)
   return fill(FIGURE, {
     TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height, ATTRIBUTES = attributes_of(page),
     POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), ENGINE = page.engine,
-    JOB = embedded {
-      name = page.script, text = page.source, files = files, same = same, values = values_of(page.params),
-    },
+    JOB = embedded(
+      { name = page.script, text = page.source, files = files, same = same, values = values_of(page.params) },
+      the.params(page.params)),
   })
 end
 

@@ -22,7 +22,13 @@ static const unsigned char PAGE_LUA[] = {
 static const char PAGE_HTML[] = {
 #include "bindings/publish/page.html.h"
 };
-static const glintL_carried MODULE = { "@page.lua", PAGE_LUA, sizeof PAGE_LUA };
+static const unsigned char DESCRIBE_LUA[] = {
+#include "bindings/command/describe.lua.h"
+};
+static const glintL_carried MODULES[] = {
+    { "@describe.lua", DESCRIBE_LUA, sizeof DESCRIBE_LUA },
+    { "@page.lua", PAGE_LUA, sizeof PAGE_LUA },
+};
 
 typedef struct publication {
     const cli_options *options;
@@ -194,7 +200,7 @@ static int push_page(lua_State *L)
     lua_setfield(L, -2, "params");
     glintL_set_text(L, "script", p->run->script);
     glintL_set_text(L, "path", p->options->script);
-    glintL_set_text(L, "title", p->options->title ? p->options->title : p->run->script);
+    glintL_set_text(L, "title", p->options->title);
     glintL_set_text(L, "controls", p->options->controls);
     glintL_set_flag(L, "shows_source", p->options->shows_source);
     glintL_set_text(L, "version", GLINT_VERSION);
@@ -227,7 +233,7 @@ static void push_tools(lua_State *L, const void *context)
 static bool make(publication *p, const char *what, glintL_made_text *text)
 {
     char message[GLINTL_MESSAGE_SIZE];
-    if (glintL_make_text(&MODULE, 1, what, push_tools, p, text, message))
+    if (glintL_make_text(MODULES, 2, what, push_tools, p, text, message))
         return true;
     if (!p->run->exit_code && !p->run->interrupted)
         glintL_run_fail(p->run, GLINTL_EXIT_USAGE, 0, "%s", message);

@@ -40,7 +40,7 @@ endif
 NPM         := $(BUILD)/npm
 PAGES_SRC   := $(wildcard bindings/web/pages/*.js bindings/web/pages/*.mjs)
 COURSE      := $(wildcard scripts/course/*.lua)
-WEB_PAGES   := $(addprefix $(WEB)/,glint.mjs worker.mjs package.json LICENSE glint-figure.js playground.js publish.js glint.wasm.gz site.css index.html \
+WEB_PAGES   := $(addprefix $(WEB)/,glint.mjs worker.mjs package.json LICENSE glint-figure.js glint-disk.js playground.js publish.js glint.wasm.gz site.css index.html \
                   figure.html course.html \
                   examples/index.json examples/moving_light.png $(patsubst scripts/%,%,$(COURSE) $(COURSE:.lua=.png)))
 
@@ -54,21 +54,27 @@ $(NPM)/node_modules: $(addprefix bindings/web/pages/,package.json package-lock.j
 	@touch $@
 
 # esbuild finds packages next to the sources.
-$(NPM)/sources: $(PAGES_SRC) bindings/web/glint.mjs $(WEB_OBJECTS)/worker.mjs | $(NPM)/node_modules
-	@cp $^ $(NPM)
+$(NPM)/sources: $(PAGES_SRC) bindings/web/glint.mjs $(WEB_OBJECTS)/worker.mjs engine/figures/text/symbols.c | $(NPM)/node_modules
+	@cp $(filter-out %.c,$^) $(NPM)
+	@node bindings/web/pages/symbols.mjs engine/figures/text/symbols.c >$(NPM)/symbols.json
 	@touch $@
 
 $(NPM)/worker.txt: $(WEB)/worker.mjs
+	@cp $< $@
+
+$(NPM)/glint.wasm.gz: $(WEB)/glint.wasm.gz
 	@cp $< $@
 
 $(WEB)/glint.mjs: BUNDLE := --bundle --external:node:*
 $(WEB)/worker.mjs: BUNDLE :=
 $(addprefix $(WEB)/,glint-figure.js playground.js): BUNDLE := --bundle --external:./glint.mjs
 $(WEB)/publish.js: BUNDLE := --bundle --external:node:* --loader:.txt=text
-$(WEB)/publish.js: $(NPM)/worker.txt
-$(addprefix $(WEB)/,glint.mjs worker.mjs glint-figure.js playground.js publish.js): $(WEB)/%: $(NPM)/sources
+$(addprefix $(WEB)/,publish.js glint-disk.js): $(NPM)/worker.txt
+$(WEB)/glint-disk.js: BUNDLE := --bundle --external:node:* --loader:.txt=text --loader:.gz=base64 --format=iife --log-override:empty-import-meta=silent
+$(WEB)/glint-disk.js: $(NPM)/glint.wasm.gz
+$(addprefix $(WEB)/,glint.mjs worker.mjs glint-figure.js playground.js publish.js glint-disk.js): $(WEB)/%: $(NPM)/sources
 	$(call say,BUNDLE)
-	$(Q)cd $(NPM) && node_modules/.bin/esbuild $* $(BUNDLE) --format=esm --minify --log-level=warning --outfile=$(CURDIR)/$@
+	$(Q)cd $(NPM) && node_modules/.bin/esbuild $* --format=esm $(BUNDLE) --minify --log-level=warning --outfile=$(CURDIR)/$@
 
 $(WEB)/package.json: bindings/web/package.json engine/glint.h
 	@sed -e 's/@version@/$(VERSION)/' $< > $@
@@ -79,9 +85,14 @@ $(WEB)/LICENSE: LICENSE
 $(WEB)/glint.wasm.gz: $(WEB)/glint.wasm
 	@gzip -9 -n <$< >$@
 
-$(addprefix $(WEB)/,site.css index.html figure.html course.html): $(WEB)/%: bindings/web/pages/%
+$(addprefix $(WEB)/,site.css index.html): $(WEB)/%: bindings/web/pages/%
 	@mkdir -p $(@D)
 	@cp $< $@
+
+# Pages of figures get the scripts of their figures, so that they work from a disk, too.
+$(addprefix $(WEB)/,figure.html course.html): $(WEB)/%: bindings/web/pages/% bindings/web/pages/inline.mjs $(BUILD)/glint $(COURSE) scripts/moving_light.lua
+	@mkdir -p $(@D)
+	$(Q)node bindings/web/pages/inline.mjs $< scripts $(BUILD)/glint >$@
 
 $(WEB)/examples/index.json: $(WEB)/glint.mjs $(WEB)/worker.mjs $(WEB)/glint.wasm bindings/web/pages/examples.mjs $(wildcard scripts/*.lua)
 	$(Q)mkdir -p $(@D) && node bindings/web/pages/examples.mjs $(WEB) scripts
@@ -101,7 +112,7 @@ $(WEB)/course/%.png: scripts/course/%.lua $(BUILD)/glint
 check-web: web ## the module in node (bits, errors, limits, memory), the pages in headless Chromium, which it installs through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
-	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh tests/web/pages.sh
+	@TEST_LIMIT_S=900 $(RUNNER) tests/web/module.sh tests/web/pages.sh tests/web/element.sh
 
 site: web $(BUILD)/meta/glint.lua ## build/site: the pages of make web with the manual, the gallery and the reference, for any static host
 	@rm -rf $(BUILD)/site

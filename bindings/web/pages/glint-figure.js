@@ -1,26 +1,36 @@
 // <glint-figure>: a picture with controls, rendered in the page.
 //
 //   <script type="module" src="glint-figure.js"></script>
-//   <glint-figure src="moving_light.lua" controls="radius,height" width="640" height="360">
-//     <img src="moving_light.png" alt="Five spheres under a lamp">
+//   <glint-figure src="phong.lua" n="32" width="640" height="360">
+//     <img src="phong.png" alt="A sphere under a lamp">
 //   </glint-figure>
 //
 // Attributes:
-//   src        address of the script; without it, the text of a <script type="text/x-lua"> inside the element
+//   src        address of the script, or of a page of glint publish; without it, the text of a <script type="text/x-lua">
+//              inside the element, which may have a name. With both, the text inside is used
 //   files      addresses of the files that the script reads, separated by commas; the script uses the last part of each
 //   controls   names of the script's parameters with a control, separated by commas; default: all parameters
 //   width, height   size of the picture, in CSS pixels, as of an img; a narrower page makes it smaller. Default: the script's
 //   frame      first frame shown, from 1
 //   timing     shows how long the last full picture took
+//   NAME       value of the parameter NAME; set-NAME if the name is one of these attributes or one of HTML. The element
+//              writes the reader's values into these attributes
 // A full picture of several samples appears in steps, with 1, 2, 4 ... samples and their estimated errors.
-// A page may set `figure.given = { name, text, files, values }` instead of src and files.
-// The picture inside the element is shown until the first frame is rendered, and without JavaScript. `figure.values`
-// has the values of the controls. Each finished picture sends the event "glint-render" with the `detail` { image,
-// coarse, ms }, and again when image.error is known. coarse: a better picture follows. An error sends "glint-error" with
-// { error }.
+// A page may set `figure.given = { name, text, files, values, params }` instead of src and files. The picture inside the
+// element is shown until the first frame is rendered, and without JavaScript. `figure.values` has the changed values;
+// `figure.set({ n: 32 })` changes some. Each change by the reader sends the event "value" with the `detail`
+// { name, value, moving }. Each finished picture sends "glint-render" with { image, coarse, ms }, and again when image.error is
+// known. coarse: a better picture follows. An error sends "glint-error" with { error }.
 import { load } from "./glint.mjs"
-import { control } from "./controls.js"
+import { control, controlStyle, parsed, spelled } from "./controls.js"
+import { Gestures, gestureStyle, orbitOf, STILL, viewOf } from "./gestures.js"
+import { copyLink, readLink } from "./link.js"
+import { Player } from "./player.js"
 import { quality, Renderer, show, wait } from "./renderer.js"
+import { listed, sourceOf } from "./source.js"
+
+const OWN = ["src", "files", "controls", "width", "height", "frame", "timing", "id", "class", "style", "title", "lang", "dir", "hidden", "slot",
+  "role", "tabindex", "part", "is", "name", "data", "inert", "draggable", "translate", "autofocus", "nonce", "popover"]
 
 let engine // one for all figures of a page
 const engineOfPage = () => engine ??= load()
@@ -42,72 +52,47 @@ const style = `
   .wait { position: absolute; bottom: 0; width: 100%; height: 3px; background: #4a90d9; transform-origin: left; }
   .error { margin: 0; padding: 0.6em 0.8em; white-space: pre-wrap; overflow-wrap: anywhere; font: 0.8125rem/1.4 ui-monospace, monospace;
     background: #8b1a1a; color: #fff; }
-  form { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(14rem, 100%), 1fr)); gap: 0.5rem 1.25rem; margin: 0.6rem 0; }
-  label { display: grid; grid-template-columns: 1fr auto; gap: 0 0.5rem; align-items: center; }
-  label > input[type=range], label > select, label > input[type=text] { grid-column: 1 / -1; width: 100%; box-sizing: border-box;
-    min-height: 1.75rem; margin: 0; font: inherit; }
-  .timing { flex: 1 1 20rem; font-size: 0.875rem; }
-  @media (max-width: 30rem) { .timing { min-height: 2lh; } }
-  .timing:empty { display: none; }
+  form { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(15rem, 100%), 1fr)); gap: 0.75rem 1.5rem; margin: 0.6rem 0; }
+  form.waits { visibility: hidden; }
+  .timing { flex: 1 1 12rem; font-size: 0.875rem; min-height: 1lh; }
   .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
   .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; margin: 0.5rem 0; }
-  .bar input { flex: 1 1 8rem; }
+  .bar input { flex: 1 1 8rem; min-width: 0; }
+  .counter { min-width: 4.5em; text-align: end; }
   button { font: inherit; padding: 0.25rem 0.8rem; min-height: 2rem; }
-`
-
-const list = text => text.split(",").map(part => part.trim()).filter(Boolean)
-
-async function fetched(address, as) {
-  const response = await fetch(address)
-  if (!response.ok) throw new Error(`${address}: the server answers ${response.status} ${response.statusText}`)
-  return as === "text" ? response.text() : new Uint8Array(await response.arrayBuffer())
-}
-
-// Plays frames in order, as fast as they are rendered, and at most at the animation's frame rate.
-class Player {
-  constructor(frames, fps, go) {
-    Object.assign(this, { frames, fps, go })
-    this.frame = 1
-    this.playing = false
+  @media (pointer: coarse), (max-width: 30rem) {
+    .bar button, .bar input { min-height: 2.75rem; min-width: 2.75rem; }
+    .timing { min-height: 2lh; }
   }
-
-  toggle() {
-    this.playing = !this.playing
-    this.due = performance.now()
-    if (this.playing) this.step()
-  }
-
-  step() {
-    this.frame = this.frame % this.frames + 1
-    this.due = Math.max(performance.now(), this.due + 1000 / this.fps)
-    this.go(this.frame)
-  }
-
-  // Called when a frame is shown.
-  shown() {
-    clearTimeout(this.timer)
-    if (this.playing) this.timer = setTimeout(() => this.playing && this.step(), Math.max(0, this.due - performance.now()))
-  }
-}
+${controlStyle}${gestureStyle}`
 
 export class GlintFigure extends HTMLElement {
-  static observedAttributes = ["src"]
-
   constructor() {
     super()
     const root = this.attachShadow({ mode: "open" })
     root.innerHTML = `<style>${style}</style>
       <figure><div class="picture"><slot></slot><canvas role="img" hidden></canvas>
-        <div class="over" aria-hidden="true"></div><div class="wait" hidden></div></div>
+        <div class="over" aria-hidden="true"></div><div class="hands" hidden></div><div class="wait" hidden></div></div>
       <pre class="error" role="alert" hidden></pre>
       <div class="bar player" hidden><button type="button" class="play" aria-pressed="false">Play</button>
         <input type="range" class="frames" min="1" step="1" value="1" aria-label="Frame"><span class="note counter"></span></div>
       <form hidden></form>
-      <div class="bar foot" hidden><button type="button" class="reset">Reset</button><span class="note timing" role="status"></span></div></figure>`
+      <div class="bar foot" hidden><button type="button" class="reset">Reset</button><button type="button" class="link">Copy link</button>
+        <span class="note timing" role="status"></span></div></figure>`
     this.part$ = selector => root.querySelector(selector)
     this.part$("form").addEventListener("submit", event => event.preventDefault())
+    this.part$(".reset").addEventListener("click", () => this.reset())
+    this.part$(".link").addEventListener("click", async () => { this.part$(".timing").textContent = await copyLink(this) })
     this.values = {}
     this.frame = 1
+    this.hands = new Gestures(this.part$(".hands"), {
+      turned: (_, moving) => this.ask(moving),
+      moved: (name, value, moving) => {
+        this.controls?.find(one => one.param.name === name)?.made.set(value)
+        this.change(name, value, moving)
+      },
+      pointOf: name => [this.values[name] ?? this.job.params.find(param => param.name === name).value].flat(),
+    })
   }
 
   // Starts the engine when the figure comes near the visible part of the page.
@@ -118,45 +103,53 @@ export class GlintFigure extends HTMLElement {
       this.start()
     }, { rootMargin: "200px" })
     this.watcher.observe(this)
+    this.observer = new MutationObserver(records => this.noticed(records))
+    this.observer.observe(this, { attributes: true })
     this.resizer = new ResizeObserver(() => {
       const { width } = this.part$(".picture").getBoundingClientRect()
       if (this.renderedWidth && Math.abs(width - this.renderedWidth) > 0.5) this.ask(false)
       this.renderedWidth = this.renderer ? width : 0
     })
     this.resizer.observe(this.part$(".picture"))
+    this.followLink = () => this.job && this.takeLink()
+    addEventListener("hashchange", this.followLink)
+    queueMicrotask(() => this.reserve()) // the parser has added the script inside by then, if the element is written in a page
   }
 
   disconnectedCallback() {
-    this.watcher?.disconnect()
-    this.resizer?.disconnect()
+    for (const one of [this.watcher, this.observer, this.resizer]) one?.disconnect()
+    removeEventListener("hashchange", this.followLink)
     this.renderer?.stop()
     this.job?.close()
     this.job = null
   }
 
-  attributeChangedCallback(_, before, now) {
-    if (before !== null && before !== now && this.job) this.start()
-  }
-
-  async source() {
-    if (this.given) return this.given
-    if (!this.hasAttribute("src")) {
-      const inside = this.querySelector('script[type="text/x-lua"]')
-      if (!inside) throw new Error("glint-figure: neither a src nor a <script type=\"text/x-lua\"> inside")
-      return { name: inside.getAttribute("name") || "figure.lua", text: inside.textContent, files: {} }
-    }
-    const address = new URL(this.getAttribute("src"), document.baseURI)
-    const files = {}
-    for (const file of list(this.getAttribute("files") ?? "")) files[file.split("/").pop()] = await fetched(new URL(file, address))
-    return { name: address.pathname.split("/").pop(), text: await fetched(address, "text"), files }
+  // Makes the controls before the engine has started, if the page has the parameters. Otherwise keeps their space free, if
+  // the attribute `controls` names them.
+  reserve() {
+    if (this.job || this.controls) return
+    this.setSize()
+    const inside = this.querySelector("script.params")
+    const known = this.given?.params ?? (inside && JSON.parse(inside.textContent))
+    if (known) return this.makeControls(known)
+    const wanted = listed(this.getAttribute("controls") ?? "")
+    if (wanted.length === 0) return
+    this.makeControls(wanted.map(name => ({ name, type: "number", min: 0, max: 1, value: 0, doc: "\u00a0" })))
+    this.controls = undefined
+    this.part$("form").classList.add("waits")
   }
 
   async start() {
+    const mine = this.starting = {}
     try {
-      const [glint, { name, text, files, values }] = await Promise.all([engineOfPage(), this.source()])
+      const [glint, source] = await Promise.all([engineOfPage(), sourceOf(this)])
+      this.source = source
+      const { name, text, files, values } = source
       this.renderer?.stop()
       this.job?.close()
-      this.job = await glint.open(text, { name, files, set: values })
+      const job = await glint.open(text, { name, files, set: values })
+      if (mine !== this.starting) return job.close()
+      this.job = job
       this.frame = Math.min(Number(this.getAttribute("frame")) || 1, this.job.frames)
       this.renderer = new Renderer(this.job, {
         page: () => this.page(),
@@ -165,18 +158,23 @@ export class GlintFigure extends HTMLElement {
         failed: error => this.failed(error),
       })
       this.setSize()
-      this.makeControls()
+      this.makeControls(this.job.params)
       this.makePlayer()
+      this.takeAttributes()
+      this.takeLink()
       this.ask(false)
     } catch (error) {
-      this.failed(error)
+      if (mine === this.starting) this.failed(error)
     }
   }
 
   // Sets the size of the picture in the page, as an img has it: the attributes', otherwise the script's; limited by the
-  // page's width.
+  // page's width. Before the script has run, the img inside stands for the script.
   setSize() {
-    const { width, height } = this.job, [wide, high] = ["width", "height"].map(name => Number(this.getAttribute(name)))
+    const inside = this.querySelector("img")
+    const { width, height } = this.job ?? { width: Number(inside?.getAttribute("width")), height: Number(inside?.getAttribute("height")) }
+    if (!this.job && !(width && height)) return
+    const [wide, high] = ["width", "height"].map(name => Number(this.getAttribute(name)))
     this.wide = wide || (high ? high * width / height : width)
     this.ratio = wide && high ? wide / high : width / height
     this.part$("figure").style.maxWidth = `${this.wide}px`
@@ -189,30 +187,125 @@ export class GlintFigure extends HTMLElement {
     return { width, height: width / this.ratio }
   }
 
-  makeControls() {
-    const wanted = this.hasAttribute("controls") ? list(this.getAttribute("controls")) : this.job.params.map(param => param.name)
-    const form = this.part$("form")
-    this.controls = []
-    form.replaceChildren()
-    for (const name of wanted) {
-      const param = this.job.params.find(one => one.name === name)
+  // ---- Parameters ----
+
+  makeControls(params) {
+    const wanted = this.hasAttribute("controls") ? listed(this.getAttribute("controls")) : params.map(param => param.name)
+    const found = wanted.map(name => {
+      const param = params.find(one => one.name === name)
       if (!param) throw new Error(`glint-figure: controls: the script has no parameter "${name}"`)
-      const made = control(param, (value, moving) => {
-        this.values = { ...this.values, [name]: value }
-        this.ask(moving)
+      return param
+    })
+    const form = this.part$("form")
+    if (!this.controls || JSON.stringify(found) !== JSON.stringify(this.controls.map(one => one.written))) {
+      this.controls = found.map(written => {
+        const param = { ...written, start: written.value }
+        return { written, param, made: control(param, (value, moving) => this.change(param.name, value, moving)) }
       })
-      this.controls.push({ param, made })
-      form.append(made.element)
+      form.replaceChildren(...this.controls.map(one => one.made.element))
+      for (const { param, made } of this.controls) if (param.name in this.values) made.set(this.values[param.name])
     }
+    form.classList.remove("waits")
     form.hidden = wanted.length === 0
-    this.part$(".foot").hidden = wanted.length === 0 && !this.hasAttribute("timing")
-    this.part$(".reset").hidden = wanted.length === 0
-    this.part$(".reset").onclick = () => {
-      for (const { param, made } of this.controls) made.set(param.value)
-      this.values = {}
-      this.ask(false)
-    }
+    this.showFoot()
   }
+
+  showFoot() {
+    const changes = this.controls?.length > 0 || this.hands.mayTurn || this.hands.handles.size > 0
+    this.part$(".foot").hidden = !changes && !this.hasAttribute("timing") && !this.part$(".timing").textContent
+    for (const button of [".reset", ".link"]) this.part$(button).hidden = !changes
+  }
+
+  // Called for each value that the reader chooses.
+  change(name, value, moving) {
+    this.values = { ...this.values, [name]: value }
+    this.reflect(name, value)
+    this.dispatchEvent(new CustomEvent("value", { detail: { name, value, moving }, bubbles: true, composed: true }))
+    this.ask(moving)
+  }
+
+  // Sets parameters, { name: value }, as the reader would. Sends no event.
+  set(values) {
+    for (const [name, value] of Object.entries(values)) {
+      this.values = { ...this.values, [name]: value }
+      this.controls?.find(one => one.param.name === name)?.made.set(value)
+      this.reflect(name, value)
+    }
+    this.ask(false)
+  }
+
+  reset() {
+    this.values = { ...this.starts }
+    for (const { param, made } of this.controls) made.set(param.start)
+    for (const param of this.job?.params ?? []) this.reflect(param.name, this.starts?.[param.name])
+    this.hands.view = { ...STILL }
+    this.ask(false)
+  }
+
+  // ---- Attributes ----
+
+  attributeOf(name) { return OWN.includes(name.toLowerCase()) ? `set-${name}` : name }
+
+  // Writes a value into its attribute; undefined removes it.
+  reflect(name, value) {
+    this.noticed(this.observer?.takeRecords() ?? [])
+    const attribute = this.attributeOf(name)
+    try {
+      if (value === undefined) this.removeAttribute(attribute)
+      else this.setAttribute(attribute, spelled(value))
+    } catch { /* the name cannot be an attribute */ }
+    this.observer?.takeRecords()
+  }
+
+  // Takes the values that the attributes have.
+  takeAttributes() {
+    this.starts = {}
+    for (const param of this.job.params) {
+      const text = this.getAttribute(this.attributeOf(param.name))
+      if (text !== null && !(param.name in this.values)) this.starts[param.name] = parsed(param, text)
+    }
+    for (const { param, made } of this.controls) {
+      if (!(param.name in this.starts)) continue
+      param.start = this.starts[param.name]
+      made.set(param.start)
+    }
+    this.values = { ...this.starts, ...this.values }
+  }
+
+  noticed(records) {
+    if (!this.job || records.length === 0) return
+    const names = new Set(records.map(record => record.attributeName))
+    if (["src", "files", "controls"].some(name => names.has(name))) return this.restart()
+    if (names.has("width") || names.has("height")) this.setSize()
+    if (names.has("frame")) this.frame = Math.min(Number(this.getAttribute("frame")) || 1, this.job.frames)
+    for (const param of this.job.params) {
+      const attribute = this.attributeOf(param.name)
+      if (!names.has(attribute.toLowerCase())) continue
+      const text = this.getAttribute(attribute)
+      const { [param.name]: _, ...others } = this.values
+      const value = text === null ? param.value : parsed(param, text)
+      this.values = text === null ? others : { ...others, [param.name]: value }
+      this.controls.find(one => one.param.name === param.name)?.made.set(value)
+    }
+    this.ask(false)
+  }
+
+  restart() {
+    this.values = {}
+    this.controls = undefined
+    this.start()
+  }
+
+  // Takes what the page's address says about this figure.
+  takeLink() {
+    const { values, frame, orbit } = readLink(this, this.job.params)
+    if (frame) this.goTo(Math.min(Math.max(1, Math.round(frame)), this.job.frames), null)
+    if (orbit) this.hands.view = viewOf(orbit)
+    if (Object.keys(values).length > 0) this.set(values)
+    else if (frame || orbit) this.ask(false)
+  }
+
+  // ---- Frames ----
 
   makePlayer() {
     const { frames } = this.job
@@ -240,9 +333,15 @@ export class GlintFigure extends HTMLElement {
     if (coarse !== null) this.ask(coarse)
   }
 
-  ask(coarse) {
-    this.renderer.ask({ frame: this.frame, set: this.values }, coarse)
+  // ---- Pictures ----
+
+  // Returns what the next picture shows, as job.render() takes it.
+  request() {
+    const orbit = orbitOf(this.hands.view)
+    return { frame: this.frame, set: this.values, ...orbit && { orbit } }
   }
+
+  ask(coarse) { this.renderer?.ask(this.request(), coarse) }
 
   shown(image, { coarse, ms }) {
     const canvas = this.part$("canvas")
@@ -253,6 +352,11 @@ export class GlintFigure extends HTMLElement {
     this.part$("slot").hidden = true
     this.part$("slot").style.display = "none"
     this.part$(".error").hidden = true
+    this.part$(".hands").hidden = false
+    this.hands.update(image, name => {
+      const param = this.job.params.find(one => one.name === name)
+      return param.label ?? name.replaceAll("_", " ")
+    })
     this.showNote(image, coarse, ms)
     this.player?.shown()
     this.dispatchEvent(new CustomEvent("glint-render", { detail: { image, coarse, ms } }))
@@ -266,12 +370,13 @@ export class GlintFigure extends HTMLElement {
     note.ariaBusy = String(coarse)
     note.style.visibility = text ? "" : "hidden" // a coarse picture leaves the text's space free
     if (text) note.textContent = text
-    if (text) this.part$(".foot").hidden = false
+    this.showFoot()
   }
 
   failed(error) {
     const box = this.part$(".error")
-    box.textContent = error.message
+    const line = error.line && error.file === this.source?.name ? this.source.text.split("\n")[error.line - 1] : undefined
+    box.textContent = error.message + (line?.trim() ? `\n\n${error.line} | ${line}` : "")
     box.hidden = false
     if (this.player?.playing) this.part$(".play").click()
     this.dispatchEvent(new CustomEvent("glint-error", { detail: { error } }))

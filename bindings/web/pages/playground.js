@@ -7,11 +7,12 @@ import { lua } from "@codemirror/legacy-modes/mode/lua"
 import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
 import { load } from "./glint.mjs"
-import { control } from "./controls.js"
+import { control, controlStyle } from "./controls.js"
 import { quality, Renderer, show, wait } from "./renderer.js"
 
 const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
+document.head.append(Object.assign(document.createElement("style"), { textContent: controlStyle }))
 const engine = load()
 
 let examples = []
@@ -289,10 +290,20 @@ get("examples").addEventListener("change", async () => {
   await openExample(get("examples").value).catch(showError)
 })
 
+// Opens a script of this site.
+async function openScript(address) {
+  if (address.origin !== location.origin) throw new Error(`src: expected a script of ${location.origin}, got ${address}`)
+  const response = await fetch(address)
+  if (!response.ok) throw new Error(`${address}: the server answers ${response.status}`)
+  name = address.pathname.split("/").pop()
+  return setScript(await response.text())
+}
+
 async function start() {
   examples = await (await fetch("examples/index.json")).json()
   for (const { name: file, title } of examples) get("examples").add(new Option(`${file}: ${title}`, file))
   const asked = new URLSearchParams(location.hash.slice(1))
+  if (asked.has("src")) return openScript(new URL(asked.get("src"), location.href))
   if (!asked.has("script")) return openExample(asked.get("example") ?? "moving_light.lua")
   const of = examples.find(one => one.name === asked.get("files"))
   if (of) {

@@ -1,0 +1,400 @@
+// Tests the element <glint-figure> as a reader uses it, with mouse, keyboard and fingers: controls, points, views, links,
+// attributes, events, errors, pages on a disk and published pages. Pictures equal the command's.
+//   node element.mjs WEB GLINT SCRIPTS WORK
+// The arguments are those of pages.mjs.
+import { execFileSync } from "node:child_process"
+import { createServer } from "node:http"
+import { createReadStream, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs"
+import { dirname, extname, join, normalize } from "node:path"
+import { fileURLToPath } from "node:url"
+import { chromium } from "playwright-core"
+
+const [web, glint, scripts, work] = process.argv.slice(2)
+const LIMIT_MS = 60000
+rmSync(work, { recursive: true, force: true })
+mkdirSync(work, { recursive: true })
+writeFileSync(join(work, "lamp.lua"), readFileSync(join(scripts, "../tests/web/lamp.lua")))
+
+let passed = 0, failed = 0
+function check(holds, what) {
+  if (holds) passed++
+  else failed++
+  if (!holds) console.log(`failed: ${what}`)
+}
+
+// ---- A server of the folder, and Chromium ----
+
+const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".png": "image/png" }
+const server = createServer((request, response) => {
+  const path = normalize(decodeURIComponent(new URL(request.url, "http://localhost").pathname))
+  const file = [join(work, path), join(web, path)].find(one => existsSync(one))
+  response.writeHead(file ? 200 : 404, { "content-type": types[extname(file ?? "")] ?? "text/plain" })
+  if (file) createReadStream(file).pipe(response)
+  else response.end()
+})
+await new Promise(done => server.listen(0, "127.0.0.1", done))
+const base = `http://127.0.0.1:${server.address().port}`
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] })
+
+const DESK = { viewport: { width: 1280, height: 800 } }
+const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 }
+
+async function open(address, options = DESK) {
+  const context = await browser.newContext(options)
+  const page = await context.newPage()
+  page.setDefaultTimeout(LIMIT_MS)
+  page.messages = []
+  page.on("console", message => message.text().includes("willReadFrequently") || page.messages.push(`${message.type()}: ${message.text()}`))
+  page.on("pageerror", error => page.messages.push(`error: ${error.message}`))
+  await page.goto(address.includes(":") ? address : `${base}/${address}`)
+  return page
+}
+
+async function close(page, what) {
+  check(page.messages.length === 0, `${what}: the console has: ${page.messages.join(" | ")}`)
+  await page.context().close()
+}
+
+function write(name, body) {
+  writeFileSync(join(work, name), `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Test</title><link rel="icon" href="data:,"><script type="module" src="glint-figure.js"></script>${body}</html>`)
+}
+
+// ---- Figures ----
+
+const figureOf = (page, i = 0) => page.locator("glint-figure").nth(i)
+const ready = figure => figure.locator("canvas").waitFor({ state: "visible" })
+const settled = figure => figure.evaluate(one => new Promise((resolve, reject) => {
+  let timer = setTimeout(resolve, 700)
+  one.addEventListener("glint-render", ({ detail }) => {
+    clearTimeout(timer)
+    timer = setTimeout(resolve, detail.coarse ? 5000 : 700)
+  })
+  setTimeout(() => reject(new Error("no full picture")), 60000)
+}))
+
+// Returns whether the figure's job gives the command's picture for the values that the figure has.
+async function same(page, figure, ...words) {
+  const script = words[0]?.endsWith(".lua") ? words.shift() : "lamp.lua"
+  await settled(figure)
+  const codes = await figure.evaluate(async one => {
+    const { set, frame, orbit } = one.request()
+    const image = await one.job.render({ set, frame, ...orbit && { orbit }, width: 64, height: 40, samples: 1 })
+    return [...image.rgba]
+  })
+  execFileSync(glint, [script, "--size", "64x40", "--samples", "1", "--force", "--quiet", "-o", "native.png", ...words], { cwd: work, env: { ...process.env, GLINT_FONT: "bitmap" } })
+  const native = await page.evaluate(async base64 => {
+    const picture = new Image()
+    picture.src = `data:image/png;base64,${base64}`
+    await picture.decode()
+    const canvas = Object.assign(document.createElement("canvas"), { width: picture.naturalWidth, height: picture.naturalHeight })
+    canvas.getContext("2d").drawImage(picture, 0, 0)
+    return [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data]
+  }, readFileSync(join(work, "native.png")).toString("base64"))
+  return codes.length === native.length && codes.every((code, i) => code === native[i])
+}
+
+const valuesOf = figure => figure.evaluate(one => one.values)
+const eventsOf = figure => figure.evaluate(one => one.events)
+const listen = figure => figure.evaluate(one => {
+  one.events = []
+  one.addEventListener("value", ({ detail }) => one.events.push(detail))
+})
+
+async function controls() {
+  write("controls.html", `<glint-figure src="lamp.lua" width="640" height="400"></glint-figure>`)
+  const page = await open("controls.html"), figure = figureOf(page)
+  await ready(figure)
+  await listen(figure)
+  const text = await figure.locator("form").innerText()
+  for (const wanted of ["position of the lamp", "angle of the plate", "20\u202f°", "1\u202fm", "256", "90"]) check(text.includes(wanted), `controls: the text has ${wanted}`)
+  check(await figure.locator(".name math mi").first().textContent() === "n", "controls: a label has a formula")
+  check(await figure.locator(".doc math msup").count() === 1 && await figure.locator(".doc math mover").count() === 2, "controls: a doc has a formula")
+  check(await figure.getByLabel("model").locator("option").allInnerTexts().then(all => all.join()) === "phong,Blinn-Phong", "controls: names of choices")
+
+  const slider = figure.getByLabel("tilt")
+  await slider.focus()
+  await page.keyboard.press("ArrowRight")
+  check((await valuesOf(figure)).tilt === 21, `controls: an arrow key: ${JSON.stringify(await valuesOf(figure))}`)
+  await figure.getByLabel("height").focus()
+  await page.keyboard.press("ArrowLeft")
+  check((await valuesOf(figure)).height === 0.985, `controls: an arrow key of a fine slider: ${JSON.stringify(await valuesOf(figure))}`)
+  await page.keyboard.press("End")
+  await figure.getByLabel("model").selectOption("blinn_phong")
+  await figure.getByLabel("Lamp x").fill("-2")
+  await figure.getByLabel("floor").uncheck()
+  check(await same(page, figure, "--set", "tilt=21", "--set", "height=2", "--set", "model=blinn_phong", "--set", "lamp=-2,2,2", "--set", "floor=false"), "controls: the picture has their values")
+  check((await eventsOf(figure)).some(one => one.name === "model" && one.value === "blinn_phong" && !one.moving), "controls: events")
+  check(await figure.getAttribute("tilt") === "21" && await figure.getAttribute("set-height") === "2" && await figure.getAttribute("lamp") === "-2,2,2", "controls: attributes follow")
+  await slider.dblclick()
+  check((await valuesOf(figure)).tilt === 20, "controls: a double click returns to the default")
+  await figure.getByRole("button", { name: "Reset" }).click()
+  check(await same(page, figure), "controls: Reset returns to the defaults")
+  check(await figure.getAttribute("lamp") === null, "controls: Reset removes attributes")
+  await page.screenshot({ path: join(work, "controls.png"), fullPage: true })
+  await close(page, "controls")
+}
+
+async function attributes() {
+  write("attributes.html", `<glint-figure id="a" src="lamp.lua" shininess="8" lamp="-1,4,2" set-height="1.5" width="320"></glint-figure>
+<glint-figure id="b" src="lamp.lua" controls="tilt" width="320"></glint-figure>`)
+  let loads = 0
+  const page = await open("attributes.html")
+  page.on("request", request => { loads += request.url().endsWith(".wasm") })
+  const [a, b] = [figureOf(page, 0), figureOf(page, 1)]
+  await Promise.all([ready(a), ready(b)])
+  check(await same(page, a, "--set", "shininess=8", "--set", "lamp=-1,4,2", "--set", "height=1.5"), "attributes: values at the start")
+  await a.evaluate(one => one.setAttribute("shininess", "100"))
+  await a.evaluate(one => one.setAttribute("model", "blinn_phong"))
+  check(await same(page, a, "--set", "shininess=100", "--set", "lamp=-1,4,2", "--set", "height=1.5", "--set", "model=blinn_phong"), "attributes: changed values")
+  check(await a.locator("input[type=range]").evaluateAll(all => all.some(one => one.getAttribute("aria-valuetext") === "100")), "attributes: the control follows")
+  await b.evaluate(one => one.set({ lamp: [0, 5, 1], tilt: 45 }))
+  check(await same(page, b, "--set", "lamp=0,5,1", "--set", "tilt=45"), "attributes: set()")
+  check(await b.locator(".control").count() === 1, "attributes: controls")
+  await a.evaluate(one => one.setAttribute("shininess", "many"))
+  await a.locator(".error").waitFor({ state: "visible" })
+  check((await a.locator(".error").innerText()).includes("--set shininess: number 1 .. 256 expected, got 'many'"), "attributes: an error is shown")
+  await a.evaluate(one => one.removeAttribute("shininess"))
+  check(await same(page, a, "--set", "lamp=-1,4,2", "--set", "height=1.5", "--set", "model=blinn_phong"), "attributes: without the value, the default")
+  check(await a.locator(".error").isHidden(), "attributes: the error is gone")
+  check(loads <= 1, `attributes: the module was loaded ${loads} times`)
+  await close(page, "attributes")
+}
+
+async function errors() {
+  writeFileSync(join(work, "wrong.lua"), 'local glint = require "glint"\n\nlocal red = glint.material { shininess = -1 }\n')
+  write("errors.html", `<glint-figure src="wrong.lua"></glint-figure><glint-figure src="missing.lua"></glint-figure>`)
+  const page = await open("errors.html")
+  for (const i of [0, 1]) await figureOf(page, i).locator(".error").waitFor({ state: "visible" })
+  const [wrong, missing] = [await figureOf(page, 0).locator(".error").innerText(), await figureOf(page, 1).locator(".error").innerText()]
+  check(wrong.includes("wrong.lua:3: material.shininess") && wrong.includes("3 | local red"), `errors: ${wrong}`)
+  check(missing.includes("missing.lua: the server answers 404"), `errors: ${missing}`)
+  await page.context().close()
+}
+
+// ---- The picture as a control ----
+
+const boxOf = async locator => (await locator.boundingBox())
+const middleOf = box => [box.x + box.width / 2, box.y + box.height / 2]
+
+async function hands() {
+  write("hands.html", `<glint-figure src="lamp.lua" width="640" height="400"></glint-figure>`)
+  const page = await open("hands.html"), figure = figureOf(page)
+  await ready(figure)
+  await listen(figure)
+  await settled(figure)
+  const handle = figure.locator(".handle"), picture = await boxOf(figure.locator(".hands"))
+  const [x, y] = middleOf(await boxOf(handle))
+  // the lamp by hand: 9 units away from the eye, seen along the line to (0, 0.5, 0)
+  const ahead = [0, -1.5, -9].map(c => c / Math.hypot(1.5, 9)), up = [0, 9, -1.5].map(c => c / Math.hypot(1.5, 9)), to = [1.5, 0, -7]
+  const depth = to.reduce((sum, c, i) => sum + c * ahead[i], 0), high = to.reduce((sum, c, i) => sum + c * up[i], 0)
+  const unit = picture.height / 2 / Math.tan(35 / 2 * Math.PI / 180) / depth // pixels
+  check(Math.abs(x - picture.x - 320 - 1.5 * unit) < 1 && Math.abs(y - picture.y - 200 + high * unit) < 1, `hands: the handle is at ${x - picture.x}, ${y - picture.y}`)
+  await page.mouse.move(x, y)
+  await page.mouse.down()
+  for (let i = 1; i <= 10; i++) await page.mouse.move(x - 15 * i, y + 5 * i)
+  await page.mouse.up()
+  const { lamp } = await valuesOf(figure)
+  const expected = [1.5 - 150 / unit, 2 - 50 / unit * up[1], 2 - 50 / unit * up[2]]
+  check(lamp.every((c, i) => Math.abs(c - expected[i]) < 0.01), `hands: the lamp is at ${lamp}, expected ${expected}`)
+  check(await same(page, figure, "--set", `lamp=${lamp}`), "hands: the picture of the moved lamp")
+  const after = middleOf(await boxOf(handle))
+  check(Math.hypot(after[0] - x + 150, after[1] - y - 50) < 1.5, "hands: the handle follows")
+  check((await figure.getByLabel("Lamp x").inputValue()) === String(lamp[0]), "hands: the fields follow")
+  const events = await eventsOf(figure)
+  check(events.length > 2 && events[0].moving && !events.at(-1).moving && events.every(one => one.name === "lamp"), "hands: events")
+  await handle.focus()
+  await page.keyboard.press("ArrowRight")
+  const moved = (await valuesOf(figure)).lamp
+  check(moved[0] > lamp[0] && Math.abs(moved[0] - lamp[0] - 6.4 / unit) < 0.01, "hands: an arrow key moves the lamp")
+  await figure.getByRole("button", { name: "Reset" }).click()
+
+  // the view: half a picture to the left turns it by 90 degrees to the right
+  await page.mouse.move(picture.x + 500, picture.y + 300)
+  await page.mouse.down()
+  for (let i = 1; i <= 8; i++) await page.mouse.move(picture.x + 500 - 40 * i, picture.y + 300 + 5 * i)
+  await page.mouse.up()
+  const orbit = await figure.evaluate(one => one.request().orbit)
+  check(orbit && orbit[0] === 90 && orbit[1] === 18, `hands: a drag turns the view: ${orbit}`)
+  check(await same(page, figure, "--orbit", orbit.join(",")), "hands: the picture of the turned view")
+  await figure.locator(".hands").focus()
+  await page.keyboard.press("ArrowLeft")
+  await page.keyboard.press("+")
+  const keyed = await figure.evaluate(one => one.request().orbit)
+  check(keyed[0] === 85 && keyed[2] === 1.1, `hands: keys turn and zoom: ${keyed}`)
+  await page.screenshot({ path: join(work, "hands.png") })
+
+  // a link has the values and the view
+  await figure.getByLabel("tilt").focus()
+  await page.keyboard.press("End")
+  await figure.getByRole("button", { name: "Copy link" }).click()
+  await page.waitForFunction(() => location.hash.length > 1)
+  const other = await open(page.url()), copy = figureOf(other)
+  await ready(copy)
+  check(await same(other, copy, "--set", "tilt=90", "--orbit", keyed.join(",")), `hands: the link ${page.url()}`)
+  await other.evaluate(() => { location.hash = "#shininess=5" })
+  check(await same(other, copy, "--set", "tilt=90", "--set", "shininess=5", "--orbit", keyed.join(",")), "hands: a changed address")
+  await close(other, "hands: link")
+  await figure.locator(".hands").dblclick({ position: { x: 20, y: 20 } })
+  check(await figure.evaluate(one => one.request().orbit) === undefined, "hands: a double click returns to the view of the script")
+  await close(page, "hands")
+}
+
+// Sends touches at points of the page through the browser's own input.
+async function touches(page) {
+  const session = await page.context().newCDPSession(page)
+  return (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) })
+}
+
+async function phone() {
+  write("phone.html", `<p>Text before.</p><glint-figure src="lamp.lua" width="640" height="400"></glint-figure><div style="height: 1500px">Text after.</div>`)
+  const page = await open("phone.html", PHONE), figure = figureOf(page)
+  await ready(figure)
+  await settled(figure)
+  check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "phone: no horizontal scroll")
+  const small = await figure.evaluate(one => [...one.shadowRoot.querySelectorAll("button, input, select")].filter(part => part.checkVisibility())
+    .map(part => ({ name: part.className || part.type, ...part.getBoundingClientRect().toJSON() })).filter(box => box.height < 44 || box.width < 44).map(box => `${box.name} ${box.width}x${box.height}`))
+  check(small.length === 0, `phone: small targets: ${small}`)
+  const letters = await figure.evaluate(one => [...one.shadowRoot.querySelectorAll(".name, .value, .end, .doc, .timing")].map(part => parseFloat(getComputedStyle(part).fontSize)))
+  check(letters.every(size => size >= 12), `phone: letters of ${Math.min(...letters)} pixels`)
+  await page.screenshot({ path: join(work, "phone.png"), fullPage: true })
+
+  const touch = await touches(page), box = await boxOf(figure.locator(".hands"))
+  const at = (x, y) => [box.x + x * box.width, box.y + y * box.height]
+  await touch("touchStart", at(0.3, 0.8))
+  for (let i = 1; i <= 10; i++) await touch("touchMove", at(0.3 + 0.03 * i, 0.8))
+  await touch("touchEnd")
+  const turned = await figure.evaluate(one => one.request().orbit)
+  check(turned && Math.abs(turned[0] + 54) < 4, `phone: a finger turns the view: ${turned}`)
+  check(await page.evaluate(() => scrollY) === 0, "phone: the page stands while the view turns")
+  await touch("touchStart", at(0.4, 0.5), at(0.6, 0.5))
+  for (let i = 1; i <= 10; i++) await touch("touchMove", at(0.4 - 0.02 * i, 0.5 - 0.01 * i), at(0.6 + 0.02 * i, 0.5 - 0.01 * i))
+  await touch("touchEnd")
+  const pinched = await figure.evaluate(one => one.request().orbit)
+  check(Math.abs(pinched[2] - 3) < 0.2 && Math.abs(pinched[4] - 0.1) < 0.03 && Math.abs(pinched[3]) < 0.02, `phone: two fingers zoom and shift: ${pinched}`)
+  await figure.getByRole("button", { name: "Reset" }).tap()
+  await page.evaluate(() => scrollTo(0, 0))
+  await settled(figure)
+  const before = middleOf(await boxOf(figure.locator(".handle")))
+  await touch("touchStart", before)
+  for (let i = 1; i <= 5; i++) await touch("touchMove", [before[0] - 8 * i, before[1] + 4 * i])
+  await touch("touchEnd")
+  check((await valuesOf(figure)).lamp?.[0] < 1.4, `phone: a finger moves the lamp: ${JSON.stringify(await valuesOf(figure))}`)
+  check(await figure.evaluate(one => one.request().orbit) === undefined, "phone: the view stands while the lamp moves")
+  await touch("touchStart", at(0.5, 0.9))
+  for (let i = 1; i <= 10; i++) await touch("touchMove", [at(0.5, 0.9)[0], at(0.5, 0.9)[1] - 15 * i])
+  await touch("touchEnd")
+  await page.waitForTimeout(300)
+  check(await page.evaluate(() => scrollY) > 50, "phone: a vertical finger scrolls the page")
+  await close(page, "phone")
+}
+
+// ---- Pages ----
+
+const run = (...words) => execFileSync(glint, words, { cwd: work, stdio: "pipe", env: { ...process.env, GLINT_FONT: "bitmap", GLINT_WEB: web, LUA_PATH: "./?.lua" } })
+
+// Returns how far the layout of a page has shifted since it began to load, as browsers count it.
+const shiftOf = page => page.evaluate(() => new Promise(resolve => {
+  let sum = 0
+  new PerformanceObserver(list => { for (const one of list.getEntries()) sum += one.value }).observe({ type: "layout-shift", buffered: true })
+  setTimeout(() => resolve(sum), 200)
+}))
+
+async function published() {
+  run("publish", "lamp.lua", "-o", "moving_lamp.html", "--set", "tilt=30")
+  for (const [name, options] of [["desk", DESK], ["phone", PHONE]]) {
+    const page = await open(`file://${join(work, "moving_lamp.html")}`, options), figure = figureOf(page)
+    await figure.locator(".control").first().waitFor({ state: "visible" })
+    const top = await page.evaluate(() => document.querySelector("glint-figure").getBoundingClientRect().bottom)
+    await ready(figure)
+    await settled(figure)
+    check(Math.abs(await page.evaluate(() => document.querySelector("glint-figure").getBoundingClientRect().bottom) - top) < 1, `published, ${name}: the layout stands`)
+    check(await page.locator("h1").innerText() === "Lamp" || await page.title() === "Lamp", `published, ${name}: a heading`)
+    check(await same(page, figure, "--set", "tilt=30"), `published, ${name}: the picture`)
+    check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `published, ${name}: no horizontal scroll`)
+    await page.screenshot({ path: join(work, `published-${name}.png`), fullPage: true })
+    await close(page, `published, ${name}`)
+  }
+  // other pages show a published page: as an element with its own attributes, and as a frame with values in its address
+  write("embedding.html", `<glint-figure src="moving_lamp.html" shininess="4" controls="shininess,tilt"></glint-figure>
+<iframe src="moving_lamp.html#shininess=64&orbit=20,10" width="700" height="700" title="A lamp"></iframe>`)
+  const page = await open("embedding.html"), figure = figureOf(page)
+  await ready(figure)
+  check(await same(page, figure, "--set", "tilt=30", "--set", "shininess=4"), "embedding: an element with a published page")
+  const inner = page.frameLocator("iframe").locator("glint-figure")
+  await inner.locator("canvas").waitFor({ state: "visible" })
+  check(await same(page, inner, "--set", "tilt=30", "--set", "shininess=64", "--orbit", "20,10"), "embedding: a frame")
+  await close(page, "embedding")
+  const context = await browser.newContext({ javaScriptEnabled: false, ...DESK }), still = await context.newPage()
+  await still.goto(`file://${join(work, "moving_lamp.html")}`)
+  check(await still.locator("glint-figure img").isVisible(), "published: a picture without JavaScript")
+  await context.close()
+}
+
+// The example of the recipes: its script and its page.
+async function recipe() {
+  const text = readFileSync(join(scripts, "../bindings/docs/how-to.md"), "utf8").split("## Put a live figure on a web page")[1]
+  writeFileSync(join(work, "phong.lua"), /```lua\n([^]*?)```/.exec(text)[1])
+  writeFileSync(join(work, "recipe.html"), `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">${/```html\n([^]*?)```/.exec(text)[1]}`)
+  run("publish", "phong.lua", "-o", "phong.html")
+  const page = await open("recipe.html"), [live, embedded, frame] = [figureOf(page, 0), figureOf(page, 1), page.frameLocator("iframe").locator("glint-figure")]
+  await live.scrollIntoViewIfNeeded()
+  await ready(live)
+  check(await same(page, live, "phong.lua", "--set", "n=8"), "recipe: the element")
+  check(await live.locator("math").count() === 2, "recipe: formulas")
+  await live.getByLabel("n", { exact: true }).focus()
+  await page.keyboard.press("End")
+  await page.waitForFunction(() => document.getElementById("exponent").value === "256")
+  await page.getByRole("button", { name: "Sharper" }).click()
+  check(await same(page, live, "phong.lua", "--set", "n=128"), "recipe: an attribute")
+  await embedded.scrollIntoViewIfNeeded()
+  await ready(embedded)
+  check(await same(page, embedded, "phong.lua", "--set", "n=64"), "recipe: a published page in an element")
+  await page.locator("iframe").scrollIntoViewIfNeeded()
+  await frame.locator("canvas").waitFor({ state: "visible" })
+  check(await same(page, frame, "phong.lua", "--set", "n=16", "--orbit", "30,10"), "recipe: a published page in a frame")
+  await page.screenshot({ path: join(work, "recipe.png"), fullPage: true })
+  await close(page, "recipe")
+}
+
+// The pages of make web work from a disk. Their layout does not shift when the engine starts.
+async function disk() {
+  for (const name of ["figure.html", "course.html"]) {
+    const page = await open(`file://${join(web, name)}`), figure = figureOf(page)
+    await figure.scrollIntoViewIfNeeded()
+    await ready(figure)
+    check(await figure.locator(".control").count() > 0, `disk: ${name} has controls`)
+    await close(page, `disk: ${name}`)
+  }
+  const page = await open("course.html")
+  await figureOf(page).locator(".control").first().waitFor({ state: "attached" })
+  const places = () => page.locator("h2").evaluateAll(all => all.map(one => one.getBoundingClientRect().top + scrollY))
+  const before = await places()
+  for (let i = 0; i < 3; i++) {
+    await figureOf(page, i).scrollIntoViewIfNeeded()
+    await ready(figureOf(page, i))
+    await settled(figureOf(page, i))
+  }
+  const after = await places()
+  check(after.every((place, i) => Math.abs(place - before[i]) < 1), `course: headings have moved: ${after.map((place, i) => Math.round(place - before[i]))}`)
+  check(await shiftOf(page) < 0.1, `course: layout shift ${await shiftOf(page)}`)
+  await page.locator(".open a").nth(1).click()
+  await page.waitForFunction(() => document.getElementById("state")?.textContent === "ready")
+  check((await page.locator(".cm-content").innerText()).includes("Lambert's cosine law"), "course: a link opens the playground")
+  await close(page, "course")
+}
+
+const only = process.env.T ?? ""
+for (const test of [controls, attributes, errors, hands, phone, published, recipe, disk]) {
+  if (!test.name.includes(only)) continue
+  try {
+    await test()
+  } catch (error) {
+    check(false, `${test.name}: ${error.stack}`)
+  }
+}
+await browser.close()
+server.close()
+console.log(`${passed} passed, ${failed} failed`)
+process.exit(failed === 0 ? 0 : 1)
