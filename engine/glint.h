@@ -491,6 +491,7 @@ typedef struct glint_shape_desc {
     double major, minor; ///< torus: radius of the circle in the middle of the tube, and radius of the tube;
         ///< 0 < minor < major, so that the tube does not intersect itself; default 1, 0.25
     glint_shading shading; ///< mesh
+    double terminator; ///< mesh: see glint_mesh_desc
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
 
@@ -502,8 +503,7 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
 /// Returns the description; borrowed. Only these fields are defined: for GLINT_SHAPE_SPHERES kind, transform,
 /// two_sided, name and material (the first); for GLINT_SHAPE_CYLINDERS these and `capped`; for a mesh these and
-/// `shading`; for a group kind, transform and name;
-/// for a combined solid these, two_sided and material. Setting `material` replaces the first material.
+/// `shading` and `terminator`; for a group kind, transform and name; for a combined solid these, two_sided and material. Setting `material` replaces the first material.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 /// Takes another reference; returns its argument.
 glint_shape *glint_shape_retain(glint_shape *shape);
@@ -592,6 +592,13 @@ typedef struct glint_mesh_desc {
     bool has_shading; ///< false: phong if there are normals, otherwise faceted
     /// Phong and gouraud without normals: the normals of the faces around a vertex are averaged, weighted by area
     glint_shading shading;
+    /// 0 (default) .. 1: share of the distance by which points of a phong mesh move outwards, from their flat faces to the
+    /// curved surface that the normals describe, before light and shadow are computed. 1 removes the steps in the shadow
+    /// at the terminator. With P the point, v and n a corner and its normal on the viewer's side, the distance is the mean
+    /// over the corners of -min(0, (P - v) . n) n with P's weights (J. Hanika, "Hacking the Shadow Terminator", Ray
+    /// Tracing Gems II, 2021). A frame refuses
+    /// such a mesh if a material of it transmits light
+    double terminator;
     glint_material *material; ///< material of all faces, retained; NULL: `materials`, the file's materials, or one
         ///< material with default fields
     /// Materials of individual faces: retained, instead of `material`; no NULL entries
@@ -729,9 +736,13 @@ typedef struct glint_tone_desc {
     glint_rounding rounding; ///< default nearest: floor(x M + 0.5); truncate: floor(x M)
     int bits; ///< 8 (default) or 16: M = 255 or 65535
     double exposure; ///< stops: light is multiplied by 2^exposure first, in float; default 0
+    /// With 8 bits: floor(x M + t) instead of `rounding`; no effect with 16 bits. The threshold t, between 0 and 1, comes from an ordered matrix
+    /// of 8 x 8 pixels (B. E. Bayer, ICC 1973) at the pixel's position in the whole frame. The mean of 8 x 8 pixels of
+    /// one colour is its x M within 0.01, and whole x M are unchanged. Default false
+    bool dither;
 } glint_tone_desc;
 
-/// Returns the defaults: clamp, sRGB, nearest, 8 bits, no exposure.
+/// Returns the defaults: clamp, sRGB, nearest, 8 bits, no exposure, no dithering.
 glint_tone_desc glint_tone_desc_default(void);
 /// Writes the smallest float of light, after exposure, that a valid tone maps to each of the 8-bit values 1 .. 255.
 /// For programs that display exactly the pixel values of a file.
@@ -759,6 +770,12 @@ typedef struct glint_render_desc {
     /// both and its mirror + transmission is above 1, because rays then double at each surface. From the 17th surface
     /// of a chain on, one of the two rays, chosen at random, represents both
     double max_depth;
+    /// 0 (default): no limit. Above 0, at most 1e9: the largest light that one random path (indirect light, rough reflection and
+    /// refraction) may bring to its pixel from one of its later surfaces. The unit is that of the picture: the light that
+    /// the pixel would show if it had only this path. Brighter light is scaled to this value in its largest channel, so
+    /// that it keeps its colour. Light from lamps at the first surface, and the background that rays from there show, have
+    /// no limit. This removes bright dots, together with a part of the light
+    double clamp;
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; stored in the image as linear float planes. Beauty may be left
         ///< out. With `outline`, the passes that it needs (depth, normal and object_id) are stored, too
     bool codes; ///< compute integer pixel values of the beauty pass while rendering, by `tone`

@@ -140,8 +140,7 @@ glint_status glint_scene_path(const glint_scene *scene, const double origin[3], 
 
 /// Returns the largest angle between a face of a mesh and its corner normals, in radians, 0 .. pi / 2, in the mesh's
 /// own space; 0 for other shapes and shading. Where light grazes a face at a smaller angle, the face shadows itself
-/// although its shading is lit. To avoid this, use more segments, or lights with `shadows` false. The first call
-/// reads all triangles; do not call it for one mesh from two threads at once.
+/// although its shading is lit. To avoid this, set `terminator` or use more segments. The first call reads all triangles; do not call it for one mesh from two threads at once.
 double glint_mesh_bend(const glint_shape *shape);
 
 /// Returns the arguments with which glint_sphere_mesh_create made a shape. Returns false and writes nothing if

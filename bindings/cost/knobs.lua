@@ -90,6 +90,16 @@ local function list_max_depth(study)
     and numbers_to_truth(own, 0, 1, 2, 5, 10)
 end
 
+-- 0, no limit, is the truth, and comes last.
+local function list_clamp(study)
+  if not study.stages.rough and not (study.stages.indirect and study.has_indirect) then return end
+  local values = numbers(study.clamp > 0 and study.clamp or 1, 1, 4, 16)
+  values[#values + 1] = 0
+  values.truth = #values
+  if study.clamp == 0 then values.own = #values end
+  return values
+end
+
 -- The first is how the other rows render: a whole frame.
 local function list_reuse(study)
   if not study.has_neighbour then return end
@@ -151,6 +161,8 @@ the.knobs = {
     end },
   { name = "reflection_samples", needs = "a rough surface that reflects",
     list = function(study) return study.stages.rough and numbers(study.reflection_samples, 1, 4, 16, 64, 256) end },
+  { name = "clamp", needs = "indirect light or a rough surface that reflects", list = list_clamp,
+    loses = function(_, value) return value > 0 and "with limited light of random paths" end },
   { name = "bits", needs = PNG, is_of_file = true,
     list = function(study) return not study.is_pfm and numbers(study.bits, 8, 16) end },
   { name = "encode", needs = PNG, is_alone = true,

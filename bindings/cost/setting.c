@@ -41,7 +41,7 @@ static int word_at(lua_State *L, const char *name, const char *const *words)
 
 static void read_render(lua_State *L, glintL_render *render)
 {
-    static const char *const FIELDS[] = { "samples", "adaptive", "precision", "max_depth", "bits", "encode" };
+    static const char *const FIELDS[] = { "samples", "adaptive", "precision", "max_depth", "clamp", "bits", "encode" };
     for (size_t i = 0; i < sizeof FIELDS / sizeof *FIELDS; i++) {
         if (lua_getfield(L, 1, FIELDS[i]) != LUA_TNIL)
             glintL_render_read(L, -1, "", glintL_render_find(FIELDS[i]), render);

@@ -84,7 +84,7 @@ static void add_moments(lua_State *L, const cost_moments *moments)
 void cost_add_subject(lua_State *L, const cost_study *study)
 {
     static const char *const FIELDS[] = { "width",     "height",    "samples", "seed",  "adaptive",
-                                          "precision", "max_depth", "bits",    "encode" };
+                                          "precision", "max_depth", "clamp", "bits", "encode" };
     const glint_scene_desc *desc = glint_scene_get(study->scene.original);
     for (size_t i = 0; i < sizeof FIELDS / sizeof *FIELDS; i++) {
         glintL_render_push(L, glintL_render_find(FIELDS[i]), study->own);

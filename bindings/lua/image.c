@@ -180,6 +180,7 @@ static void read_options(lua_State *L, glint_write_desc *desc)
           .offset = offsetof(options, desc.tone.curve),
           .names = glintL_tone_curves },
         { .name = "exposure", .type = GLINT_TYPE_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
+        { .name = "dither", .type = GLINT_TYPE_FLAG, .offset = offsetof(options, desc.tone.dither) },
         { .name = "encode", .type = GLINT_TYPE_CHOICE, .offset = offsetof(options, desc.encode), .names = encodes },
         { .name = "dpi", .type = GLINT_TYPE_NUMBER, .offset = offsetof(options, desc.dpi) },
         { .name = "colormap", .type = GLINT_TYPE_OTHER },

@@ -19,6 +19,7 @@ static const char *const FORMATS[] = { "f32", "f64", NULL };
 #define EVERY_MESH \
     {.name = "shading", .type = GLINT_TYPE_CHOICE, .offset = AT(desc.shading), .set_offset = AT(desc.has_shading), \
      .names = SHADINGS}, \
+    {.name = "terminator", .type = GLINT_TYPE_NUMBER, .offset = AT(desc.terminator)}, \
     {.name = "material", .type = GLINT_TYPE_OTHER}, \
     {.name = "transform", .type = GLINT_TYPE_TRANSFORM, .offset = AT(desc.transform)}, \
     {.name = "two_sided", .type = GLINT_TYPE_FLAG, .offset = AT(desc.two_sided)}, \

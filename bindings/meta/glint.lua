@@ -370,7 +370,7 @@ function glint.cylinders(fields) end
 
 ---@alias glint.shading
 ---| "faceted"  # shaded per sample, with the normal of the face
----| "phong"  # shaded per sample, with a normal interpolated from the vertices, in the mesh's own space (without `normals`, a vertex has the mean normal of the faces around it); shadows are computed with the flat faces
+---| "phong"  # shaded per sample, with a normal interpolated from the vertices, in the mesh's own space (without `normals`, a vertex has the mean normal of the faces around it); shadows are computed with the flat faces, see `terminator`
 ---| "flat"  # shaded once per face, at its centroid
 ---| "gouraud"  # shaded once per vertex, with its normal; interpolated by barycentric coordinates
 
@@ -386,9 +386,11 @@ function glint.cylinders(fields) end
 ---@field materials? glint.material[]  instead of `material`, with `index`
 ---@field index? integer[]|string  which of `materials` each face has, from 1: a table, or packed u32 numbers
 ---@field shading? glint.shading  Default "phong" with normals, else "faceted"
+---@field terminator? number  0 .. 1, for phong shading: 1 moves points outwards to the curved surface before light and shadow are computed, so that the terminator has no steps. Not with `transmission`, a translucent `opacity` or in combined solids. Default 0
 
 ---@class glint.mesh: glint.shape_fields, glint.object
 ---@field shading glint.shading
+---@field terminator number  0 .. 1
 ---@field count integer  number of triangles; read-only
 ---@field materials glint.material[]  all materials; for a mesh from a file, the materials that its faces use. The list is read-only, but the fields of its materials can be set
 ---@field min glint.vector  the corner of the smallest coordinates of the box around the vertices, before the transform; read-only
@@ -403,6 +405,7 @@ function glint.mesh(fields) end
 ---@field radius number  world units, > 0; the vertices are on the sphere
 ---@field segments integer  number of segments around the equator, 3 to 16384; from pole to pole there are half as many
 ---@field shading? glint.shading  Default "phong", with the sphere's own normals at the vertices
+---@field terminator? number  see `glint.mesh`
 
 --- A mesh that approximates a sphere, to compare with the exact one.
 ---@param fields glint.sphere_mesh_fields
@@ -808,6 +811,7 @@ function glint.scene(fields) end
 ---@field adaptive? number  0 .. 3: takes all samples only in pixels at an edge, and in pixels that differ from a neighbour by more than this number: the sum of the differences in red, green and blue, with white at 1. Other pixels get one sample. Default 0: off
 ---@field seed? integer  0 .. 2^53: selects one of many equally good sample patterns. Default 0
 ---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 if mirror + transmission of a material exceeds 1. Default 5
+---@field clamp? number  the most light that one random path (indirect light, rough surfaces) may bring from one of its later surfaces, in units of the picture; removes bright dots together with a part of the light. Default 0: no limit
 ---@field precision? "double"|"float"  the number format in which hits and shadows are decided. Default "double"
 ---@field visibility? "auto"|"cast"|"scan"  how visible surfaces are found: by casting a ray through each sample, or by projecting triangles. The pictures are identical. Default "auto"
 ---@field bits? 8|16  bits per channel of a .png. Default 8
@@ -817,6 +821,7 @@ function glint.scene(fields) end
 ---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the tone curve. Default 0
 ---@field alpha? boolean  transparent background, also behind glass and translucent surfaces: a .png is RGBA, and passes store light times coverage. Default false
 ---@field outline? "none"|"black"|"white"  colour of lines drawn into the .png where the pass "outline" is 1. Default "none"
+---@field dither? boolean  ordered dithering of 8-bit pixel values instead of rounding, against bands in dark gradients. Default false
 ---@field encode? "fast"|"small"  compression of a .png; the pixels are identical. Default "fast"
 ---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  colour map for the .png of depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
 ---@field dpi? number  pixels per inch for printing a .png, .svg or .pdf, 0 .. 1e6. Default 0: not stored; then a pixel of a .svg or .pdf is a point
@@ -831,6 +836,7 @@ function glint.scene(fields) end
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
 ---@field exposure? number  stops, -32 .. 32. Default 0
+---@field dither? boolean  Default false
 ---@field encode? "fast"|"small"  Default "fast"
 ---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"|string  colour map for depth and d:NAME. "viridis:1:9" maps 1 to the first colour and 9 to the last, linearly. Default "none": grey, over the range of the picture's values
 ---@field dpi? number  pixels per inch of a .png, .svg or .pdf, 0 .. 1e6. Default 0: not stored

@@ -166,7 +166,7 @@ static int tone(lua_State *L)
     const glint_tone_desc plain = glint_tone_desc_default();
     lua_pushnumber(L, own->exposure);
     lua_pushinteger(L, (lua_Integer)own->curve + 1);
-    lua_pushboolean(L, own->bits == plain.bits && own->transfer == plain.transfer && own->rounding == plain.rounding);
+    lua_pushboolean(L, own->bits == plain.bits && own->transfer == plain.transfer && own->rounding == plain.rounding && !own->dither);
     return 3;
 }
 

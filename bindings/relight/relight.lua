@@ -94,7 +94,7 @@ local function write_page(my, lights, files)
   local exposure, curve, is_plain = my.tone()
   if not is_plain then
     my.fail(2, "-o " .. my.options.output .. ": the page always shows 8-bit sRGB, rounded to the nearest value; "
-      .. "expected no --bits, --transfer or --rounding")
+      .. "expected no --bits, --transfer, --rounding or --dither")
   end
   local template, version = my.page()
   local title = my.options.title or files[1]:match "[^/]*$"

@@ -15,12 +15,14 @@
     FIELD(height, NUMBER, WHOLE, desc.height, 1, GLINT_SIDE_MAX, NULL)                                                  \
     OPTION(samples, NUMBER, WHOLE, desc.samples, 1, GLINTL_SAMPLES_MAX, NULL, "N", "samples per pixel")                       \
     OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "chooses another sample pattern")                   \
+    OPTION(clamp, NUMBER, REAL, desc.clamp, 0, 1e9, NULL, "LIGHT", "most light that one random path brings; 0: no limit") \
     FIELD(max_depth, NUMBER, WHOLE, desc.max_depth, 0, DEPTH_MAX, NULL)                                                 \
     OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "bits of a colour channel")                         \
     OPTION(precision, CHOICE, CHOICE, desc.precision, 0, 0, precisions, "", "precision of hits and shadows")           \
     OPTION(transfer, CHOICE, CHOICE, desc.tone.transfer, 0, 0, transfers, "", "encoding of linear light in pixels")    \
     OPTION(rounding, CHOICE, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "rounding to pixel values")              \
     OPTION(tone, CHOICE, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "tone curve for bright light")         \
+    OPTION(dither, FLAG, FLAG, desc.tone.dither, 0, 0, NULL, NULL, "ordered dithering of 8-bit pixel values")            \
     OPTION(encode, CHOICE, CHOICE, encode, 0, 0, encodes, "", "compression: fast to write or small on disk")           \
     FIELD(colormap, CHOICE, COLORS, colormap, 0, 0, glintL_pass_colormaps)                                                \
     FIELD(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL)                                                                         \

@@ -370,6 +370,8 @@ static void look_for_bends(const look *l, const glint_shape *shape, const ball *
     double center[3], radius, segments;
     if (!glint_sphere_mesh_get(shape, center, &radius, &segments))
         return;
+    if (glint_shape_get(shape)->terminator > 0)
+        return;
     const double bend = glint_mesh_bend(shape) * (180 / 0x1.921fb54442d18p+1);
     for (int i = 0; i < l->all->light_count; i++)
         shadows = shadows || (glint_light_get(l->all->lights[i])->shadows && !is_dark(glint_light_get(l->all->lights[i])));
@@ -378,7 +380,7 @@ static void look_for_bends(const look *l, const glint_shape *shape, const ball *
     describe(glint_shape_get(shape), b, name);
     glintL_run_warn(l->run,
                     "%s: its smooth normals differ from its flat faces by up to %.0f degrees, so its shadow in "
-                    "grazing light follows the flat faces; use more segments, or set shadows = false for the lights",
+                    "grazing light follows the flat faces; set its terminator = 1, or use more segments",
                     name, bend);
 }
 

@@ -29,16 +29,15 @@ static glint_status fill_codes(const glint_image *image, glint_tone_desc tone, i
     float *const *p = image->plane[GLINT_PASS_BEAUTY];
     const size_t pixels = pixel_count(image);
     tone.bits = bits;
+    tone.dither = false;
     glint_status status = glint_tone_table_shared(&tone, &table, error);
     if (status)
         return status;
     *out = (codes) { bits, malloc(pixels * 3 * (bits == 16 ? sizeof(uint16_t) : 1)) };
     if (!out->rgb)
         return glint_fail_nomem(error);
-    if (bits == 16)
-        glint_tone_row16(table, glint_tone_gain(&tone), p[0], p[1], p[2], pixels, out->rgb, NULL, NULL);
-    else
-        glint_tone_row8(table, glint_tone_gain(&tone), p[0], p[1], p[2], pixels, out->rgb, NULL, NULL);
+    glint_tone_row(table, glint_tone_gain(&tone), (const float *const[3]) { p[0], p[1], p[2] }, NULL, (const int[2]) { 0, 0 },
+                   pixels, out->rgb, NULL);
     return GLINT_OK;
 }
 

@@ -190,6 +190,8 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
     const size_t stride = (size_t)image->width, row = (size_t)width, rows = (size_t)height;
     (*out)->outline = image->outline;
     (*out)->exposure = image->exposure;
+    (*out)->part_x = x;
+    (*out)->part_y = y;
     memcpy((*out)->derivative, image->derivative, sizeof image->derivative);
     for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)

@@ -46,7 +46,7 @@ struct glint_image {
         ///< stamps in two images of one size and tone mean equal codes in these rows; 0: unknown
     glint_image *under; ///< the image without overlays, whose planes and codes this one shares; NULL: none. Owned
     glint_cover *cover; ///< overlays to draw over beauty in a PNG; NULL: none. Owned
-    int part_x, part_y; ///< position of the first pixel in the whole picture, for the overlays
+    int part_x, part_y; ///< position of the first pixel in the whole picture, for overlays and dithering
 };
 
 /// Returns how many rows of tiles an image has: the number of its stamps.

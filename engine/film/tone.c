@@ -13,7 +13,7 @@
 
 glint_tone_desc glint_tone_desc_default(void)
 {
-    return (glint_tone_desc) { GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUNDING_NEAREST, 8, 0 };
+    return (glint_tone_desc) { GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUNDING_NEAREST, 8, 0, false };
 }
 
 glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
@@ -36,7 +36,7 @@ glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
 bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b)
 {
     return a->curve == b->curve && a->transfer == b->transfer && a->rounding == b->rounding && a->bits == b->bits &&
-           a->exposure == b->exposure;
+           a->exposure == b->exposure && a->dither == b->dither;
 }
 
 // ---- By definition ------------------------------------------------------------------------------------------------
@@ -237,12 +237,18 @@ glint_status glint_tone_table_create(const glint_tone_desc *desc, glint_tone_tab
         return glint_fail_nomem(error);
     table->desc = *desc;
     table->desc.exposure = 0;
+    table->desc.dither = desc->dither && desc->bits == 8;
+    if (table->desc.dither) { // 257 steps for each 8-bit value, to which whole thresholds are added
+        table->desc.bits = 16;
+        table->desc.rounding = GLINT_ROUNDING_TRUNCATE;
+    }
+    const bool wide = table->desc.bits == 16;
     table->white = (float)glint_tone_curve_white(desc->curve);
-    table->top = desc->curve == GLINT_TONE_CLAMP ? 1 : first_of_code(&table->desc, desc->bits == 8 ? 255 : 65535);
-    table->has_fit = desc->bits == 8 && desc->curve == GLINT_TONE_CLAMP;
+    table->top = desc->curve == GLINT_TONE_CLAMP ? 1 : first_of_code(&table->desc, wide ? 65535 : 255);
+    table->has_fit = !wide && desc->curve == GLINT_TONE_CLAMP;
     if (table->has_fit)
         make_fit(table);
-    if (!(desc->bits == 8 ? fill_lut(table) : fill_thresholds(table))) {
+    if (!(wide ? fill_thresholds(table) : fill_lut(table))) {
         glint_tone_table_destroy(table);
         return glint_fail_nomem(error);
     }
@@ -261,7 +267,7 @@ void glint_tone_table_destroy(glint_tone_table *table)
 }
 
 static pthread_mutex_t store_lock = PTHREAD_MUTEX_INITIALIZER;
-static glint_tone_table *store[GLINT_TONE_FILMIC + 1][2][2][2];
+static glint_tone_table *store[GLINT_TONE_FILMIC + 1][2][2][3];
 static size_t store_users;
 
 void glint_tone_store_open(void)
@@ -289,7 +295,7 @@ glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_to
     if (status)
         return status;
     glint_tone_table **slot = &store[desc->curve][desc->transfer == GLINT_TRANSFER_SRGB]
-                                    [desc->rounding == GLINT_ROUNDING_NEAREST][desc->bits == 16];
+                                    [desc->rounding == GLINT_ROUNDING_NEAREST][desc->bits == 16 ? 1 : desc->dither ? 2 : 0];
     pthread_mutex_lock(&store_lock);
     if (!*slot)
         status = glint_tone_table_create(desc, slot, error);
@@ -331,73 +337,41 @@ static inline uint16_t code16(const glint_tone_table *table, float exposed)
     return (uint16_t)code;
 }
 
-/// Returns whether a channel of the light before exposure is not finite, and whether a channel of the light after
-/// exposure is brighter than white.
-static inline bool is_odd(float r, float g, float b) { return !isfinite(r) || !isfinite(g) || !isfinite(b); }
-static inline bool is_clipped(const glint_tone_table *table, const float x[3])
+/// Returns the threshold of a pixel, 2 .. 254, in steps of a 257th of an 8-bit value: its place in Bayer's matrix of 8 x
+/// 8, whose bits are those of x ^ y and y, interleaved and reversed.
+static unsigned threshold_at(unsigned x, unsigned y)
 {
-    return x[0] > table->white || x[1] > table->white || x[2] > table->white;
+    unsigned place = 0;
+    for (unsigned bit = 0; bit < 3; bit++)
+        place = place << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
+    return 4 * place + 2;
 }
 
-/// Writes codes of one width; the other pointer is NULL.
-static inline void make_row(const glint_tone_table *table, float gain, const float *const light[3], size_t count,
-                            uint8_t *rgb8, uint16_t *rgb16, uint64_t *clipped, uint64_t *nonfinite)
+void glint_tone_row(const glint_tone_table *table, float gain, const float *const light[3], const float *alpha,
+                    const int at[2], size_t count, void *codes, uint64_t counts[2])
 {
-    uint64_t above = 0, odd = 0;
-    for (size_t i = 0; i < count; i++) {
-        const float x[3] = { gain * light[0][i], gain * light[1][i], gain * light[2][i] };
-        for (size_t c = 0; c < 3; c++) {
-            if (rgb8)
-                rgb8[3 * i + c] = code8(table, x[c]);
-            else if (rgb16)
-                rgb16[3 * i + c] = code16(table, x[c]);
-        }
-        above += is_clipped(table, x);
-        odd += is_odd(light[0][i], light[1][i], light[2][i]);
-    }
-    if (clipped)
-        *clipped += above;
-    if (nonfinite)
-        *nonfinite += odd;
-}
-
-void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
-                     size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
-{
-    make_row(table, gain, (const float *const[3]) { r, g, b }, count, rgb, NULL, clipped, nonfinite);
-}
-
-void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
-                      size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
-{
-    make_row(table, gain, (const float *const[3]) { r, g, b }, count, NULL, rgb, clipped, nonfinite);
-}
-
-void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
-                          size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite)
-{
-    uint64_t above = 0, odd = 0;
-    const bool wide = table->desc.bits == 16;
+    const bool dither = table->desc.dither, wide = table->desc.bits == 16 && !dither;
     const double most = wide ? 65535 : 255;
+    const size_t channels = alpha ? 4 : 3;
     for (size_t i = 0; i < count; i++) {
-        const bool covered = alpha[i] > 0;
-        float light[3], x[3];
-        unsigned code[4] = { 0, 0, 0, (unsigned)((double)alpha[i] * most + 0.5) };
-        for (int c = 0; c < 3; c++) {
-            light[c] = covered ? rgb[c][i] / alpha[i] : 0;
-            x[c] = gain * light[c];
-            code[c] = wide ? code16(table, x[c]) : code8(table, x[c]);
-        }
-        for (size_t c = 0; c < 4; c++)
+        const unsigned threshold = dither ? threshold_at((unsigned)at[0] + (unsigned)i, (unsigned)at[1]) : 0;
+        bool clipped = false, odd = false;
+        for (size_t c = 0; c < channels; c++) {
+            const float x = c == 3 ? alpha[i] : !alpha ? light[c][i] : alpha[i] > 0 ? light[c][i] / alpha[i] : 0;
+            const unsigned code = c == 3   ? (unsigned)((double)x * most + 0.5)
+                                  : dither ? (code16(table, gain * x) + threshold) / 257
+                                  : wide   ? code16(table, gain * x)
+                                           : code8(table, gain * x);
             if (wide)
-                ((uint16_t *)rgba)[4 * i + c] = (uint16_t)code[c];
+                ((uint16_t *)codes)[channels * i + c] = (uint16_t)code;
             else
-                ((uint8_t *)rgba)[4 * i + c] = (uint8_t)code[c];
-        above += is_clipped(table, x);
-        odd += is_odd(light[0], light[1], light[2]);
+                ((uint8_t *)codes)[channels * i + c] = (uint8_t)code;
+            clipped = clipped || (c < 3 && gain * x > table->white);
+            odd = odd || (c < 3 && !isfinite(x));
+        }
+        if (counts) {
+            counts[0] += clipped;
+            counts[1] += odd;
+        }
     }
-    if (clipped)
-        *clipped += above;
-    if (nonfinite)
-        *nonfinite += odd;
 }

@@ -9,7 +9,7 @@
 
 /// The codes of one curve, for light after exposure.
 typedef struct glint_tone_table {
-    glint_tone_desc desc; ///< with exposure 0
+    glint_tone_desc desc; ///< with exposure 0; with `dither`, the steps are those of 16 bits, truncated
     float white, top; ///< light above `white` is clipped; light above `top` (at most `white`) gets the value of `top`
     uint32_t *lut; ///< 8 bits: see codes.h
     bool has_fit; ///< 8 bits: whether the fit of the tone stage exists, which only the curve `clamp` has
@@ -48,17 +48,12 @@ void glint_tone_store_close(void);
 /// Returns a table of the open store. The first call makes it. Valid until the caller closes the store. Any thread.
 glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error);
 
-/// Converts `count` pixels of three planes to interleaved codes. The table's bits must match the function's name.
-/// *clipped and *nonfinite (each may be NULL) grow by the number of pixels with a channel brighter than white, and with
-/// a channel that is not finite.
-void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
-                     size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
-void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
-                      size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
-
-/// The same with alpha. `rgb` is light times coverage; the light is divided by the coverage before conversion. Where
-/// `alpha`, 0 .. 1, is 0, all four codes are 0. Alpha is linear and rounded to nearest. For 8 and 16 bits.
-void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
-                          size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite);
+/// Converts `count` pixels of three planes to interleaved codes, uint8_t or uint16_t. at: the position of the first pixel in
+/// the whole frame, for dithering. alpha: NULL, or the coverage, 0 .. 1, for codes of four channels: `light` is then light
+/// times coverage, and is divided by the coverage before conversion. Where it is 0, all four codes are 0. Alpha is linear
+/// and rounded to nearest. The two counts (NULL: not wanted) grow by the number of pixels with a channel brighter than
+/// white, and with a channel that is not finite.
+void glint_tone_row(const glint_tone_table *table, float gain, const float *const light[3], const float *alpha,
+                    const int at[2], size_t count, void *codes, uint64_t counts[2]);
 
 #endif

@@ -44,7 +44,7 @@ static glint_image *new_picture(int width, int height, const glint_tone_desc *to
 static glint_image *random_picture(void)
 {
     glint_tone_desc tone = { GLINT_TONE_CLAMP, below(2) ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR,
-                             below(2) ? GLINT_ROUNDING_NEAREST : GLINT_ROUNDING_TRUNCATE, below(3) ? 8 : 16, 0 };
+                             below(2) ? GLINT_ROUNDING_NEAREST : GLINT_ROUNDING_TRUNCATE, below(3) ? 8 : 16, 0, false };
     int width = below(2) ? 1 + (int)below(100) : 1400 + (int)below(300);
     return new_picture(width, 1 + (int)below(width > 100 ? 150 : 1000), &tone);
 }

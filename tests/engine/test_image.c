@@ -87,7 +87,7 @@ static void test_tone_every_step(void **state)
     (void)state;
     for (int i = 0; i < 24; i++) {
         glint_tone_desc desc = {(glint_tone_curve)(i / 8), i & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
-                                i & 2 ? GLINT_ROUNDING_TRUNCATE : GLINT_ROUNDING_NEAREST, i & 4 ? 16 : 8, 0};
+                                i & 2 ? GLINT_ROUNDING_TRUNCATE : GLINT_ROUNDING_NEAREST, i & 4 ? 16 : 8, 0, false};
         check_every_step(&desc);
     }
 }
@@ -95,7 +95,7 @@ static void test_tone_every_step(void **state)
 static void test_tone_known(void **state) // test cases I1, I2, I3
 {
     (void)state;
-    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUNDING_NEAREST, 8, 0};
+    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUNDING_NEAREST, 8, 0, false};
     static const double in[] = {0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, NAN, -1, INFINITY};
     static const int want[] = {0, 1, 2, 128, 255, 255, 0, 0, 255};
     for (int i = 0; i < 9; i++)
@@ -121,32 +121,38 @@ static void test_tone_known(void **state) // test cases I1, I2, I3
     glint_tone_table_destroy(table);
 }
 
+static void count_row(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b, size_t count,
+                      uint64_t counts[2])
+{
+    uint8_t rgb[18];
+    glint_tone_row(table, gain, (const float *const[3]) {r, g, b}, NULL, (const int[2]) {0, 0}, count, rgb, counts);
+}
+
 static void test_tone_counts(void **state)
 {
     (void)state;
     static const float r[] = {0.5f, 2, NAN, 0, INFINITY, -1}, g[] = {0.5f, 2, 0, -INFINITY, 0, 0}, b[6] = {0};
     glint_tone_desc desc = glint_tone_desc_default();
     const glint_tone_table *table;
-    uint8_t rgb[18];
-    uint64_t clipped = 10, nonfinite = 20;
+    uint64_t counts[2] = {10, 20};
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
-    glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
-    assert_int_equal(clipped, 12);
-    assert_int_equal(nonfinite, 23);
+    count_row(table, 1, r, g, b, 6, counts);
+    assert_int_equal(counts[0], 12);
+    assert_int_equal(counts[1], 23);
     // 2 becomes exactly white, which is not clipped
-    glint_tone_row8(table, 0.5f, r, g, b, 6, rgb, &clipped, &nonfinite);
-    assert_int_equal(clipped, 13);
+    count_row(table, 0.5f, r, g, b, 6, counts);
+    assert_int_equal(counts[0], 13);
     desc.curve = GLINT_TONE_REINHARD; // this curve clips nothing
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
-    glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
-    assert_int_equal(clipped, 13);
+    count_row(table, 1, r, g, b, 6, counts);
+    assert_int_equal(counts[0], 13);
     desc.curve = GLINT_TONE_FILMIC;
     static const float bright[] = {5.5f, 5.7f, 1e30f, 0, 0, 0};
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
-    glint_tone_row8(table, 1, bright, g + 5, b, 1, rgb, &clipped, &nonfinite);
-    assert_int_equal(clipped, 13);
-    glint_tone_row8(table, 1, bright + 1, b, b, 2, rgb, &clipped, &nonfinite);
-    assert_int_equal(clipped, 15);
+    count_row(table, 1, bright, g + 5, b, 1, counts);
+    assert_int_equal(counts[0], 13);
+    count_row(table, 1, bright + 1, b, b, 2, counts);
+    assert_int_equal(counts[0], 15);
 }
 
 static void check_near(double got, double want, double tolerance)
@@ -199,6 +205,46 @@ static void test_tone_exposure(void **state)
     for (int i = 0; i < 4; i++) {
         desc.exposure = wrong[i];
         assert_int_equal(glint_tone_check(&desc, NULL), GLINT_ERR_INVALID);
+    }
+}
+
+/// Returns entry x, y of Bayer's matrix of 2^level x 2^level, by its recursion M(2n) = [4M, 4M + 2; 4M + 3, 4M + 1].
+static int bayer(int level, int x, int y)
+{
+    static const int corner[2][2] = {{0, 2}, {3, 1}};
+    const int half = level ? 1 << (level - 1) : 0;
+    return level ? 4 * bayer(level - 1, x % half, y % half) + corner[y / half][x / half] : 0;
+}
+
+/// Dithering: each pixel value by its threshold, the means of blocks, and whole values, for each curve.
+static void test_tone_dither(void **state)
+{
+    (void)state;
+    for (int curve = 0; curve < 3; curve++) {
+        glint_tone_desc desc = {.curve = (glint_tone_curve)curve, .transfer = GLINT_TRANSFER_SRGB, .bits = 8, .dither = true};
+        const glint_tone_table *table;
+        assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
+        for (double value = 0; value <= 255; value += value < 2 ? 0.0625 : 2.71875) {
+            const double light = glint_tone_curve_inverse(desc.curve, glint_srgb_decode(value / 255));
+            if (!(light < 1e6))
+                continue;
+            float row[8];
+            double sum = 0;
+            for (int i = 0; i < 8; i++)
+                row[i] = (float)light;
+            for (int y = 0; y < 8; y++) {
+                uint8_t rgb[24];
+                glint_tone_row(table, 1, (const float *const[3]) {row, row, row}, NULL, (const int[2]) {16, 40 + y}, 8, rgb, NULL);
+                for (int x = 0; x < 8; x++) {
+                    const double up = value + (4 * bayer(3, x, y) + 2) / 257.0;
+                    if (fabs(up - round(up)) > 0.005) // the light is rounded to float, and its value to a 257th
+                        assert_int_equal(rgb[3 * x], (int)up);
+                    assert_int_equal(rgb[3 * x], rgb[3 * x + 2]);
+                    sum += rgb[3 * x];
+                }
+            }
+            check_near(sum / 64, value, value == floor(value) ? 0 : 0.01);
+        }
     }
 }
 
@@ -303,7 +349,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_image_sizes), cmocka_unit_test(test_tone_known), cmocka_unit_test(test_tone_every_step),
-        cmocka_unit_test(test_tone_counts),   cmocka_unit_test(test_tone_curves), cmocka_unit_test(test_tone_exposure), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_cached),
+        cmocka_unit_test(test_tone_counts),   cmocka_unit_test(test_tone_curves), cmocka_unit_test(test_tone_exposure), cmocka_unit_test(test_tone_dither), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_cached),
         WITH_FOLDER(test_compare),
     };
     glint_tone_store_open();

@@ -69,8 +69,9 @@ static long try(double exposure, double threshold)
     assert_int_equal(glint_image_create_for(&coded, &image, NULL), GLINT_OK);
     paint(image, threshold);
     assert_int_equal(glint_tone_table_shared(&coded.tone, &table, NULL), GLINT_OK);
-    glint_tone_row16(table, glint_tone_gain(&coded.tone), image->plane[GLINT_PASS_BEAUTY][0], image->plane[GLINT_PASS_BEAUTY][1],
-                     image->plane[GLINT_PASS_BEAUTY][2], PIXELS, image->codes, NULL, NULL);
+    float *const *beauty = image->plane[GLINT_PASS_BEAUTY];
+    glint_tone_row(table, glint_tone_gain(&coded.tone), (const float *const[3]) { beauty[0], beauty[1], beauty[2] }, NULL,
+                   (const int[2]) { 0, 0 }, PIXELS, image->codes, NULL);
     assert_int_equal(glint_refine_begin(&by_estimates, running, image, &desc, NULL), GLINT_OK);
     assert_int_equal(glint_refine_begin(&by_codes, running, image, &desc, NULL), GLINT_OK);
     assert_false(by_estimates.coded);

@@ -311,6 +311,38 @@ do -- a finalizer changes the scene while the engine reads a table
   check(busy.indirect.samples == 3 and busy.camera.eye.z == 2, "finalizers may change the scene")
 end
 
+-- ---- clamp ----------------------------------------------------------------------------------------------------------
+
+-- In a ball whose walls glow with kd Ia, each path brings kd^(bounces + 1) Ia, so the limit is exact and keeps the colour.
+for bounces = 1, 2 do
+  for _, clamp in ipairs { 0, 0.25, 1, 100 } do
+    local image = look({ 0.3, 0.2, 0.1 }, { 1, 0, 0 },
+      { ambient = 8, indirect = { samples = 3, bounces = bounces }, ball(2, plain {}) }, { clamp = clamp, samples = 2 })
+    local want, most = {}, 0
+    for c = 1, 3 do
+      want[c] = 8 * kd[c] ^ (bounces + 1)
+      most = math.max(most, want[c])
+    end
+    for c = 1, 3 do want[c] = want[c] * (clamp > 0 and math.min(clamp / most, 1) or 1) end
+    local r, g, b = image:pixel(4, 3)
+    near3(r, g, b, want, 4 * ROUNDING + 32 * LOSS, ("%d bounces, clamp %g"):format(bounces, clamp))
+  end
+end
+
+-- The background that the first ray of a path shows has no limit. Beyond a mirror above the floor, it has.
+do
+  local disk = glint.disk { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 0.01, material = plain { diffuse = 1 } }
+  local function brightness(clamp, ...)
+    local image = look({ 0, 0.2, 0 }, { 0, -1, 0 },
+      { background = 10, indirect = { samples = 16, bounces = 1 }, disk, ... }, { clamp = clamp, max_depth = 1, width = 3, height = 3 })
+    return (image:pixel(1, 1))
+  end
+  local mirror = floor(glint.material { diffuse = 0, mirror = 1 }, 1, -1)
+  near(brightness(1), 10, 1e-5, "open sky, clamp 1")
+  check(brightness(0, mirror) > 9.9, "mirrored sky")
+  near(brightness(1, mirror), 1, 1e-5, "mirrored sky, clamp 1")
+end
+
 -- ---- Identical pictures in every configuration ----------------------------------------------------------------------
 
 local script = os.tmpname()
@@ -326,11 +358,11 @@ local scene = glint.scene {
   glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = matt },
   glint.sphere { center = { -1.5, 1, 0 }, radius = 1, material = glossy },
   glint.sphere { center = { 0.4, 0.7, 1.6 }, radius = 0.7, material = glint.material { diffuse = 0.1, transmission = 0.8, fresnel = true } },
-  glint.sphere_mesh { center = { 1.6, 1, 0 }, radius = 1, segments = 24, material = matt },
+  glint.sphere_mesh { center = { 1.6, 1, 0 }, radius = 1, segments = 24, terminator = 1, material = matt },
   glint.sphere_mesh { center = { 2.8, 0.5, 1.5 }, radius = 0.5, segments = 10, shading = "gouraud", material = matt },
   glint.box { min = { -4, 0, -3 }, max = { 4, 3, -2.5 }, material = glint.material { diffuse = { 0.2, 0.6, 0.3 } } },
 }
-return glint.animation { scene = scene, frames = 3, samples = 2, frame = function(t)
+return glint.animation { scene = scene, frames = 3, samples = 2, clamp = 0.3, frame = function(t)
   matt.diffuse = { 0.7, 0.3 + 0.2 * t, 0.2 } -- what the walls send on changes, what they are does not
 end }
 ]]

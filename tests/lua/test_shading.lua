@@ -495,8 +495,71 @@ function tests.bits()
   end
 end
 
+-- Points of a mesh with `terminator` move to the curved surface: by Hanika's formula, in front and behind, which a lamp
+-- with attenuation shows as a distance. Corners are at -1 and 1 of an orthographic picture of 200 x 200 pixels.
+function tests.terminator()
+  local corners = { { -1, -1, 0 }, { 1, -1, 0.2 }, { 0, 1, -0.1 } }
+  local normals = { unit { -0.5, -0.3, 1 }, unit { 0.6, -0.2, 1 }, unit { 0.1, 0.7, 1 } }
+  for _, z in ipairs { 5, -5 } do
+    local lamp = { 0.3, 0.4, z / 4 }
+    for _, share in ipairs { 0, 0.5, 1 } do
+      local scene = glint.scene {
+        camera = glint.camera { eye = { 0, 0, z }, at = { 0, 0, 0 }, projection = "orthographic", height = 2 },
+        glint.point_light { position = lamp, attenuation = { 0, 0, 1 } },
+        glint.mesh { vertices = corners, faces = { { 1, 2, 3 } }, normals = normals, terminator = share,
+          material = glint.material { diffuse = 1 } },
+      }
+      local image = scene:render { width = 200, height = 200, output = "none" }
+      for _, at in ipairs { { 100, 110 }, { 60, 180 }, { 130, 120 }, { 95, 30 } } do
+        local x, y = (at[1] + 0.5) / 100 - 1, 1 - (at[2] + 0.5) / 100
+        if z < 0 then x = -x end
+        -- weights of the corners: x = w2 - w1, y = 2 w3 - 1
+        local w3 = (y + 1) / 2
+        local w = { (1 - w3 - x) / 2, (1 - w3 + x) / 2, w3 }
+        local p, n, moved = { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }
+        for j = 1, 3 do
+          p = plus(p, corners[j], w[j])
+          n = plus(n, normals[j], z > 0 and w[j] or -w[j])
+        end
+        for j = 1, 3 do
+          local own = times(normals[j], z > 0 and 1 or -1)
+          moved = plus(moved, own, -w[j] * math.min(0, dot(minus(p, corners[j]), own)))
+        end
+        local to_lamp = minus(lamp, plus(p, moved, share))
+        local want = math.max(dot(unit(n), to_lamp), 0) / dot(to_lamp, to_lamp) ^ 1.5
+        local got = image:pixel(at[1], at[2])
+        check(math.abs(got - want) <= 1e-6 * want, "eye at %g, terminator %g, pixel %d, %d: %g, not %g", z, share, at[1], at[2],
+          got, want)
+      end
+    end
+  end
+  -- A coarse ball has no shadow on itself where its shading is lit; another ball's shadow stays.
+  local function dark(terminator, shadows, ...)
+    local scene = glint.scene {
+      camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 }, fov = 26 },
+      glint.directional_light { direction = { -1, -0.3, -0.2 }, shadows = shadows },
+      glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 16, terminator = terminator }, ...,
+    }
+    local image, count = scene:render { width = 120, height = 120, output = "none" }, 0
+    for y = 0, 119 do
+      for x = 0, 119 do count = count + (image:pixel(x, y) > 0 and 0 or 1) end
+    end
+    return count
+  end
+  local lit = dark(0, false)
+  check(dark(0, true) > lit + 100, "steps at the terminator")
+  check(dark(1, true) == lit, "no steps with terminator = 1: %d, not %d", dark(1, true), lit)
+  check(dark(1, true, glint.sphere { center = { 2, 0.6, 0.4 }, radius = 0.3 }) > lit + 30, "a shadow of another ball")
+  for field, value in pairs { transmission = 0.5, opacity = 0.5 } do
+    local scene = glint.scene { glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 8, terminator = 1, name = "pane",
+      material = glint.material { [field] = value } } }
+    local good, message = pcall(scene.render, scene, { width = 8, height = 8, output = "none" })
+    check(not good and message:find("mesh pane.terminator: expected 0", 1, true), "%s: %s", field, message)
+  end
+end
+
 local only = arg[1]
-for _, name in ipairs { "truth", "no_shadow_by_neighbours", "shadows", "corner_normals", "terms", "reuse", "called_for", "bits" } do
+for _, name in ipairs { "truth", "no_shadow_by_neighbours", "shadows", "corner_normals", "terms", "reuse", "called_for", "bits", "terminator" } do
   if not only or only == name then tests[name]() end
 end
 os.execute("rm -rf '" .. scratch .. "'")

@@ -14,6 +14,8 @@ static glint_key key_of(const glint_plan *plan, const glint_write_desc *desc)
     glint_plan_key(plan, half);
     glint_key key = glint_key_add((glint_key) { half[0], half[1] }, options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
+    if (desc->tone.dither)
+        key = glint_key_add_string(key, "dither");
     half[0] = key.high;
     half[1] = key.low;
     glint_plan_add_pass_key(plan, desc->pass, half);

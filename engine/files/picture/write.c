@@ -25,6 +25,7 @@ typedef struct picture {
     float *const *plane;
     glint_tone_desc tone; ///< the tone of the file
     const glint_tone_table *table; ///< the tone table, for colour passes
+    const float *alpha; ///< the coverage, for colour passes with alpha; otherwise NULL
     float gain; ///< for colour passes: the factor of light, see glint_tone_gain
     double nearest; ///< the smallest depth of the image
     double steepest; ///< the largest absolute slope of the image
@@ -87,25 +88,14 @@ static const void *row_of_codes(const void *user, int y, void *scratch)
     return (const uint8_t *)p->image->codes + (size_t)y * (size_t)p->image->width * glint_image_pixel_bytes(p->image);
 }
 
+/// Makes a row of light; a row of beauty has alpha if the picture has it.
 static const void *row_of_color(const void *user, int y, void *scratch)
 {
     const picture *p = user;
+    const int first[2] = { p->image->part_x, p->image->part_y + y };
     size_t width = (size_t)p->image->width, at = (size_t)y * width;
-    const float *r = p->plane[0] + at, *g = p->plane[1] + at, *b = p->plane[2] + at;
-    if (p->tone.bits == 16)
-        glint_tone_row16(p->table, p->gain, r, g, b, width, scratch, NULL, NULL);
-    else
-        glint_tone_row8(p->table, p->gain, r, g, b, width, scratch, NULL, NULL);
-    return scratch;
-}
-
-/// Makes a row of beauty with alpha.
-static const void *row_of_covered(const void *user, int y, void *scratch)
-{
-    const picture *p = user;
-    size_t width = (size_t)p->image->width, at = (size_t)y * width;
-    const float *rgb[3] = { p->plane[0] + at, p->plane[1] + at, p->plane[2] + at };
-    glint_tone_row_alpha(p->table, p->gain, rgb, p->image->plane[GLINT_PASS_ALPHA][0] + at, width, scratch, NULL, NULL);
+    const float *const rgb[3] = { p->plane[0] + at, p->plane[1] + at, p->plane[2] + at };
+    glint_tone_row(p->table, p->gain, rgb, p->alpha ? p->alpha + at : NULL, first, width, scratch, NULL);
     return scratch;
 }
 
@@ -366,7 +356,8 @@ static glint_status open_plain_rows(const glint_image *image, const glint_write_
     } else if (look == GLINT_LOOK_LIGHT) {
         status = glint_tone_table_shared(&desc->tone, &p->table, error);
         p->gain = glint_tone_gain(&desc->tone);
-        source->row = source->alpha ? row_of_covered : row_of_color;
+        p->alpha = source->alpha ? image->plane[GLINT_PASS_ALPHA][0] : NULL;
+        source->row = row_of_color;
     } else if (look == GLINT_LOOK_DEPTH) {
         find_nearest(p);
         source->row = row_of_depth;

@@ -102,6 +102,10 @@ void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *s
     prim->corner = f->geometry->corners[f->corner_count++];
     prim->face = 0;
     prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
+    if (prim->item != GLINT_MISS && shape->desc.shading == GLINT_SHADING_PHONG) {
+        f->geometry->normals[prim->item].terminator = shape->desc.terminator;
+        f->geometry->table.moves = f->geometry->table.moves || shape->desc.terminator > 0;
+    }
     prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
     for (int j = 0; j < 3; j++) {
         const int from = reversed ? (3 - j) % 3 : j;

@@ -100,7 +100,7 @@ static glint_key output_key(const glint_plan *plan, uint64_t which, glint_key ke
 {
     const glint_tone_desc *tone = &plan->desc.tone;
     const double numbers[] = {
-        plan->desc.codes, tone->curve, tone->transfer, tone->rounding, tone->bits, tone->exposure
+        plan->desc.codes, tone->curve, tone->transfer, tone->rounding, tone->bits, tone->exposure, tone->dither
     };
     if (which & GLINT_READS(PASSES))
         GLINT_KEY_ADD(key, plan->desc.passes);

@@ -67,6 +67,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     if (!status)
         status = glint_check_whole("max_depth", desc->max_depth, 0, 0x1p31, error);
     if (!status)
+        status = glint_check_range("clamp", desc->clamp, 0, 1e9, "number 0 .. 1e9", error);
+    if (!status)
         status = glint_check_whole("seed", desc->seed, 0, 0x1p53, error);
     if (!status && desc->precision > GLINT_PRECISION_FLOAT)
         status = glint_fail(error, GLINT_ERR_INVALID, "precision: double or float expected");

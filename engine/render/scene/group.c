@@ -70,6 +70,8 @@ static const char *refusal_of(const glint_shape *part, const glint_shape **found
     case GLINT_SHAPE_MESH:
         if (part->desc.shading == GLINT_SHADING_FLAT || part->desc.shading == GLINT_SHADING_GOURAUD)
             return "shading = \"faceted\" or \"phong\"";
+        if (part->desc.terminator > 0)
+            return "terminator = 0";
         return part->mesh->closure.triangles ? "a closed mesh" : NULL;
     default:
         break;

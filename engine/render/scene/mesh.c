@@ -226,6 +226,8 @@ static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error
     if (desc->material_index && !desc->material_count)
         return glint_fail(error, GLINT_ERR_INVALID, "materials: an index needs 1 or more, got none");
     glint_status status = glint_check_transform("transform", &desc->transform, error);
+    if (!status)
+        status = glint_check_range("terminator", desc->terminator, 0, 1, "number 0 .. 1", error);
     return !status && desc->has_shading ? glint_check_shading(desc->shading, error) : status;
 }
 
@@ -413,6 +415,7 @@ static glint_status make(const glint_mesh_desc *desc, glint_mesh_faults *faults,
     glint_shape_desc base = glint_shape_desc_default(GLINT_SHAPE_MESH);
     base.two_sided = desc->two_sided;
     base.transform = desc->transform;
+    base.terminator = desc->terminator;
     base.shading = desc->has_shading ? desc->shading : desc->normals ? GLINT_SHADING_PHONG : GLINT_SHADING_FACETED;
     memcpy(base.name, desc->name, sizeof base.name);
     glint_shape *shape = glint_shape_alloc(&base, desc->material_count ? desc->material_count : 1);

@@ -90,6 +90,9 @@ static const glint_object_field cylinders_fields[] = { CAPPED("both ends"), EVER
 
 static const glint_object_field mesh_fields[] = {
     { GLINT_ROW(shading, CHOICE), .names = shadings, .doc = "where the light is computed" },
+    { GLINT_ROW(terminator, NUMBER), .high = 1,
+      .doc = "phong shading: 1 moves points outwards to the curved surface before light and shadow are computed, so that the "
+             "terminator has no steps; 0: points stay on the flat faces. Not with `transmission`, `opacity` or in combined solids" },
     EVERY_SHAPE,
 };
 

@@ -273,36 +273,27 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_step(tile, frame, GLINT_AT_STORE_LIGHT, NULL);
 }
 
-static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
+/// Converts the tile's pixels row by row, if the stage tone does not support the format.
+static void tone_rows(glint_tile *tile, const glint_tile_frame *frame)
 {
     float row[3][GLINT_TILE_WIDTH], alpha[GLINT_TILE_WIDTH];
     const glint_image *image = frame->image;
+    uint64_t counts[2] = { 0 };
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++) {
             const uint32_t i = glint_tile_slot(tile, x, y);
-            alpha[x] = coverage_at(tile, frame->plan, i);
+            alpha[x] = frame->plan->desc.alpha ? coverage_at(tile, frame->plan, i) : 1;
             for (int c = 0; c < 3; c++)
                 row[c][x] = tile->film.beauty[c][i];
         }
-        const size_t at = (size_t)(tile->y0 + y) * (size_t)image->width + tile->x0;
-        glint_tone_row_alpha(frame->tone_table, frame->gain, (const float *const[3]) { row[0], row[1], row[2] }, alpha,
-                             tile->width, (char *)image->codes + at * glint_image_pixel_bytes(image),
-                             &tile->counts.clipped, &tile->counts.nonfinite);
+        const int first[2] = { (int)tile->x0, (int)(tile->y0 + y) };
+        const size_t at = (size_t)first[1] * (size_t)image->width + (size_t)first[0];
+        glint_tone_row(frame->tone_table, frame->gain, (const float *const[3]) { row[0], row[1], row[2] },
+                       frame->plan->desc.alpha ? alpha : NULL, first, tile->width,
+                       (char *)image->codes + at * glint_image_pixel_bytes(image), counts);
     }
-}
-
-static void tone16(glint_tile *tile, const glint_tile_frame *frame)
-{
-    float row[3][GLINT_TILE_WIDTH];
-    uint16_t *codes = frame->image->codes;
-    for (uint32_t y = 0; y < tile->height; y++) {
-        for (uint32_t x = 0; x < tile->width; x++)
-            for (int c = 0; c < 3; c++)
-                row[c][x] = tile->film.beauty[c][glint_tile_slot(tile, x, y)];
-        uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
-        glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
-                         &tile->counts.nonfinite);
-    }
+    tile->counts.clipped += counts[0];
+    tile->counts.nonfinite += counts[1];
 }
 
 /// Prefetches the tile's rows of a picture; memory may be NULL.
@@ -346,12 +337,8 @@ void glint_tile_prefetch_derivatives(const glint_tile *tile, const glint_tile_fr
 
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
 {
-    if (frame->plan->desc.alpha) {
-        tone_alpha(tile, frame);
-        return;
-    }
-    if (frame->plan->desc.tone.bits == 16) {
-        tone16(tile, frame);
+    if (frame->plan->desc.alpha || frame->plan->desc.tone.bits == 16 || frame->plan->desc.tone.dither) {
+        tone_rows(tile, frame);
         return;
     }
     const size_t stride = 3 * (size_t)frame->image->width;

@@ -443,12 +443,26 @@ static void aim_occlude(const glint_tile *tile, const glint_tile_frame *frame, u
     }
 }
 
+/// Returns the primitives that the tile's points are on, except the triangles off which their points have moved.
+static const uint32_t *owners(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (tile->owner || !frame->geometry.moves)
+        return tile->owner ? tile->owner : tile->at.prim;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        const glint_prim *prim = hit ? &frame->geometry.prims[tile->at.prim[i]] : NULL;
+        const bool moved = hit && prim->kind == GLINT_PRIM_TRIANGLE && glint_real_at(tile->surface.slack, frame->plan->desc.precision, i) < 0;
+        tile->moved[i] = moved ? GLINT_MISS : tile->at.prim[i];
+    }
+    return tile->moved;
+}
+
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count)
 {
     glint_occlude_args args = { .group_count = tile->group_count,
                                 .sample_count = count,
-                                .prim = tile->owner ? tile->owner : tile->at.prim,
+                                .prim = owners(tile, frame),
                                 .back = tile->hit.back,
                                 .geometry = &frame->geometry,
                                 .stop = frame->cancelled,

@@ -173,6 +173,7 @@ typedef struct glint_tile {
     uint32_t x0, y0, width, height; ///< the part of the tile inside the image
     uint32_t group_count, groups_across;
     uint16_t own_light[GLINT_TILE_GROUPS]; ///< target of at.sampled in frames with the stage vertex
+    _Alignas(64) uint32_t moved[GLINT_TILE_SAMPLES]; ///< for occlude: at.prim, or GLINT_MISS for points moved by a terminator
     const uint32_t *owner; ///< for occlude: the primitives that the points are on, for faces and vertices; NULL: the
         ///< primitives hit
     const void *viewed[3]; ///< for occlude: the rays that hit the points; NULL: the tile's rays

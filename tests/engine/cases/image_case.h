@@ -95,7 +95,8 @@ static inline glint_image *make_image(int width, int height, const glint_tone_de
         glint_tone_store_open();
         assert_int_equal(glint_tone_table_shared(codes, &table, NULL), GLINT_OK);
         float **p = image->plane[GLINT_PASS_BEAUTY];
-        glint_tone_row8(table, glint_tone_gain(codes), p[0], p[1], p[2], count, image->codes, NULL, NULL);
+        glint_tone_row(table, glint_tone_gain(codes), (const float *const[3]) {p[0], p[1], p[2]}, NULL, (const int[2]) {0, 0}, count,
+                       image->codes, NULL);
         glint_tone_store_close();
     }
     return image;
@@ -124,14 +125,9 @@ static inline glint_bytes read_ok(const char *path)
 
 static inline uint16_t code_of(const glint_tone_table *table, float x)
 {
-    uint8_t a[3];
-    uint16_t b[3];
-    if (table->desc.bits == 8) {
-        glint_tone_row8(table, 1, &x, &x, &x, 1, a, NULL, NULL);
-        return a[1];
-    }
-    glint_tone_row16(table, 1, &x, &x, &x, 1, b, NULL, NULL);
-    return b[1];
+    uint16_t codes[3];
+    glint_tone_row(table, 1, (const float *const[3]) {&x, &x, &x}, NULL, (const int[2]) {0, 0}, 1, codes, NULL);
+    return table->desc.bits == 8 ? ((const uint8_t *)codes)[1] : codes[1];
 }
 
 #define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)

@@ -177,6 +177,22 @@ static glint_status check_depth(const glint_plan *plan, double most, glint_error
                       GLINT_BOUNCE_DEPTH, most, plan->desc.max_depth);
 }
 
+/// Refuses meshes whose points move off their faces, if rays go on through a face: they would pass it twice.
+static glint_status check_moved(const glint_plan *plan, glint_error *error)
+{
+    for (uint32_t i = 0; i < plan->geometry->part_count; i++) {
+        const glint_shape *shape = plan->geometry->parts[i].shape;
+        for (size_t k = 0; shape->desc.terminator > 0 && k < shape->material_count; k++) {
+            const glint_material_desc *desc = &shape->materials[k]->desc;
+            if (glint_material_transmits(desc) || glint_material_blends(desc))
+                return glint_fail(error, GLINT_ERR_INVALID, "mesh%s%s.terminator: expected 0, because its material %s, got %g",
+                                  *shape->desc.name ? " " : "", shape->desc.name,
+                                  glint_material_transmits(desc) ? "transmits light" : "is translucent", shape->desc.terminator);
+        }
+    }
+    return GLINT_OK;
+}
+
 glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
     const glint_scene_desc *scene = glint_scene_get(from->scene);
@@ -205,6 +221,8 @@ glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from
     }
     bound_light(plan);
     glint_status status = check_depth(plan, splitting, error);
+    if (!status)
+        status = check_moved(plan, error);
     if (!status && plan->transmits && !plan->camera.orthographic)
         status = glint_plan_eye(plan, error);
     return status;

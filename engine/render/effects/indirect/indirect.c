@@ -389,59 +389,76 @@ static void local_light(const glint_batch *batch, uint32_t g, double light[3][GL
         }
 }
 
+/// Scales the weight of light that ray i brings to at most desc.clamp, as if its pixel had only this path. The background
+/// that the first ray of a path shows is not limited. hit: whether the ray hit a surface.
+static void limit_light(const struct glint_indirect *indirect, const glint_plan *plan, uint32_t i, bool hit, const double light[3],
+                        double weight[3])
+{
+    const glint_rays *rays = indirect->batch.rays;
+    double most = 0;
+    if (plan->desc.clamp == 0 || plan->indirect.is_sky || (rays == &indirect->first && !hit))
+        return;
+    for (int c = 0; c < 3; c++)
+        most = glint_larger(weight[c] * light[c] * indirect->paths[rays->point[i]], most);
+    for (int c = 0; c < 3 && most > plan->desc.clamp; c++)
+        weight[c] *= plan->desc.clamp / most;
+}
+
 /// Adds the light of rays that hit in some samples of a group. Paths that end there take the ambient light instead of
 /// the indirect light of further steps.
-static void collect_group(const glint_batch *batch, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
+static void collect_group(const struct glint_indirect *indirect, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
 {
+    const glint_batch *batch = &indirect->batch;
     const glint_rays *rays = batch->rays;
     double light[3][GLINT_GROUP];
     local_light(batch, g, light);
     for (unsigned bits = lanes; bits; bits &= bits - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(bits), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
         const bool last = plan->indirect.rest && rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
-        double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]], weight[3];
+        double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]], weight[3], rest[3], all[3];
         for (int c = 0; c < 3; c++) {
-            const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
+            rest[c] = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
             weight[c] = rays->weight[c][i];
-            sum[c][rays->pixel[i]] += weight[c] * (light[c][lane] + rest);
+            all[c] = light[c][lane] + rest[c];
+        }
+        limit_light(indirect, plan, i, batch->tile.at.hits[g] >> lane & 1, all, weight);
+        for (int c = 0; c < 3; c++) {
+            sum[c][rays->pixel[i]] += weight[c] * all[c];
             if (plan->light_groups)
-                glint_groups_add_ambient(to, plan, rays->pixel[i], c, weight[c] * rest);
+                glint_groups_add_ambient(to, plan, rays->pixel[i], c, weight[c] * rest[c]);
         }
         if (plan->light_groups)
             glint_groups_collect(batch, plan, to, at, rays->pixel[i], weight);
     }
 }
 
-/// Adds the background. The first rays of the eye's points belong to the point's own pixel.
+/// The first rays of the eye's points belong to the point's own pixel.
 void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
-                                   const uint16_t *missed, const double background[3], glint_tile *to)
+                                   const uint16_t *missed, const double *background, glint_tile *to)
 {
     const glint_rays *rays = indirect->batch.rays;
     glint_sky_args args = { .group_count = rays->group_count, .missed = missed };
     for (int c = 0; c < 3; c++) {
         args.weight[c] = rays->weight[c];
-        args.background[c] = background[c];
+        args.background[c] = background ? background[c] : 0;
         args.sum[c] = to->film.sum[indirect->term < GLINT_TERM_COUNT ? indirect->term : GLINT_TERM_INDIRECT][c];
     }
-    if (rays == &indirect->first && !indirect->batch.ordered && indirect->term < GLINT_TERM_COUNT) { // each ray has its own pixel
+    if (background && rays == &indirect->first && !indirect->batch.ordered && indirect->term < GLINT_TERM_COUNT) { // each ray has its own pixel
         frame->stages->sky(&args);
         return;
     }
-    for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
-        for (int c = 0; c < 3 && glint_has_lane(missed, i); c++)
-            to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * background[c];
-}
-
-/// Adds the background of missed rays if a program computes the background.
-static void collect_shown(const glint_batch *batch, const uint16_t *missed, glint_tile *to)
-{
-    const glint_rays *rays = batch->rays;
-    for (uint32_t g = 0; g < rays->group_count; g++)
-        for (unsigned bits = missed[g]; bits; bits &= bits - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
-            for (int c = 0; c < 3; c++)
-                to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * batch->shown[c][i];
+    for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++) {
+        double light[3], weight[3];
+        if (!glint_has_lane(missed, i))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            light[c] = background ? background[c] : indirect->batch.shown[c][i];
+            weight[c] = rays->weight[c][i];
         }
+        limit_light(indirect, frame->plan, i, false, light, weight);
+        for (int c = 0; c < 3; c++)
+            to->film.sum[rays->term[i]][c][rays->pixel[i]] += weight[c] * light[c];
+    }
 }
 
 /// Adds the light of the rays to their pixels; for a whole batch in the order of rays, which may share pixels.
@@ -452,15 +469,12 @@ static void collect(const struct glint_indirect *indirect, const glint_tile_fram
     const uint32_t groups = batch->whole ? batch->rays->group_count : batch->tile.group_count;
     for (uint32_t g = 0; g < groups; g++)
         if (lanes[g])
-            collect_group(batch, frame->plan, g, lanes[g], to);
+            collect_group(indirect, frame->plan, g, lanes[g], to);
     if (batch->whole)
         return;
     uint16_t missed[GLINT_TILE_GROUPS];
     glint_batch_find_missed(batch, missed);
-    if (frame->plan->environment)
-        collect_shown(batch, missed, to);
-    else
-        glint_indirect_collect_missed(indirect, frame, missed, frame->plan->background, to);
+    glint_indirect_collect_missed(indirect, frame, missed, frame->plan->environment ? NULL : frame->plan->background, to);
 }
 
 /// Counts the rays: those of rough surfaces by the term of their light.
@@ -554,6 +568,7 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 {
     GLINT_KEY_ADD(key, plan->indirect.samples);
     GLINT_KEY_ADD(key, plan->indirect.bounces);
+    GLINT_KEY_ADD(key, plan->desc.clamp);
     if (plan->indirect.is_sky)
         GLINT_KEY_ADD(key, plan->indirect.distance);
     return glint_key_add(key, plan->indirect.rest, plan->material_count * sizeof *plan->indirect.rest);

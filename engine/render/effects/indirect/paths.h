@@ -129,9 +129,10 @@ bool glint_indirect_begin_paths(struct glint_indirect *indirect, const glint_til
                                 uint32_t path, uint64_t number);
 /// Computes the continuations at samples of the batch with mirrors and transparent materials.
 void glint_indirect_find_directions(struct glint_indirect *indirect, const glint_tile_frame *frame);
-/// Adds the background seen by rays that hit nothing, the lanes in `missed`, to the sums of their pixels.
+/// Adds the background seen by rays that hit nothing, the lanes in `missed`, to the sums of their pixels. background: NULL:
+/// the colours in batch->shown.
 void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
-                                   const uint16_t *missed, const double background[3], glint_tile *to);
+                                   const uint16_t *missed, const double *background, glint_tile *to);
 /// After a cast: adds the open sky that the rays reach, and continues the rays that hit transparent surfaces.
 /// Returns whether there are any.
 bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any, uint32_t step,

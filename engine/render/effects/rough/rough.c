@@ -240,6 +240,7 @@ static void gather(glint_tile *tile, const glint_tile_frame *frame, const glint_
 static glint_key own_key(const glint_plan *plan, glint_key key)
 {
     GLINT_KEY_ADD(key, plan->rough_samples);
+    GLINT_KEY_ADD(key, plan->desc.clamp);
     return glint_bounce_key(plan, key);
 }
 

@@ -91,18 +91,11 @@ static bool has_all_terms(const glint_image *image)
 
 static void tone_row(const exposure *e, size_t row, uint64_t counts[2])
 {
-    const glint_tone_desc *tone = &e->plan->desc.tone;
-    const size_t at = row + (size_t)e->extent.x, count = (size_t)e->extent.width;
+    const size_t at = row + (size_t)e->extent.x, width = (size_t)e->image->width;
     const float *const rgb[3] = { e->beauty[0] + at, e->beauty[1] + at, e->beauty[2] + at };
-    const float gain = glint_tone_gain(tone);
-    char *codes = (char *)e->image->codes + at * glint_image_pixel_bytes(e->image);
-    if (e->plan->desc.alpha)
-        glint_tone_row_alpha(e->table, gain, rgb, e->alpha + at, count, codes, &counts[0], &counts[1]);
-    else if (tone->bits == 16)
-        glint_tone_row16(e->table, gain, rgb[0], rgb[1], rgb[2], count, (uint16_t *)(void *)codes, &counts[0],
-                         &counts[1]);
-    else
-        glint_tone_row8(e->table, gain, rgb[0], rgb[1], rgb[2], count, (uint8_t *)codes, &counts[0], &counts[1]);
+    const int first[2] = { (int)(at % width), (int)(at / width) };
+    glint_tone_row(e->table, glint_tone_gain(&e->plan->desc.tone), rgb, e->plan->desc.alpha ? e->alpha + at : NULL, first,
+                   (size_t)e->extent.width, (char *)e->image->codes + at * glint_image_pixel_bytes(e->image), counts);
 }
 
 static void finish_row(void *context, size_t index, int worker)

@@ -220,6 +220,27 @@ static inline void R(smooth_normal)(vr corner[3][3], const vr w[3], const vr fla
         out[k] = r_select(away, -out[k], out[k]);
 }
 
+/// Moves a point of a triangle towards the surface that the normals at its corners describe: by `share` of the mean
+/// distance to their tangent planes, of those above the point. facing: the geometric normal on the viewer's side.
+static inline void R(toward_curve)(vr corner[3][3], vr normal[3][3], const vr w[3], const vr facing[3], vr share,
+                                   vr point[3])
+{
+    const vr zero = r_set(0);
+    vr sum[3] = { zero, zero, zero }, curved[3];
+    for (int k = 0; k < 3; k++)
+        curved[k] = (w[0] * normal[0][k] + w[1] * normal[1][k]) + w[2] * normal[2][k];
+    const rm away = r_lt(DOT(curved, facing), zero);
+    for (int j = 0; j < 3; j++) {
+        const vr q[3] = { point[0] - corner[j][0], point[1] - corner[j][1], point[2] - corner[j][2] };
+        const vr l = DOT(normal[j], normal[j]), h = DOT(normal[j], q), below = r_min(r_select(away, -h, h), zero);
+        const vr move = r_select(r_lt(zero, l), (w[j] * r_select(away, -below, below)) / l, zero);
+        for (int k = 0; k < 3; k++)
+            sum[k] = sum[k] + move * normal[j][k];
+    }
+    for (int k = 0; k < 3; k++)
+        point[k] = point[k] - share * sum[k];
+}
+
 // ---- Occlude ----
 
 /// A triangle's plane.

@@ -157,7 +157,8 @@ typedef struct glint_surface_args {
 // normal of a very distant sphere is computed from the line's distance from the centre. The slack of a triangle holds
 // for corner weights within [0, 1 + 2^-50]: it covers one rounding each for the edges, the products, their sum and
 // the point. The geometric normal decides `back`, also for smooth triangles. The point of a solid is projected onto
-// its surface.
+// its surface. A smooth triangle with `terminator` moves its points after that: ref/triangle.h, toward_curve.
+// Their `slack` is negative, as that of other surfaces: they are on no triangle.
 
 #define GLINT_SPHERE_NEAR 0x1p40
 #define GLINT_SPHERE_CLOSE_DOUBLE 0x1p8

@@ -116,6 +116,7 @@ typedef struct glint_node {
 /// Normals at the corners of a smoothly shaded triangle: unit, except after a map that does not preserve angles.
 typedef struct glint_corner_normals {
     double normal[3][3];
+    double terminator; ///< see glint_mesh_desc; 0: points stay on the triangle
 } glint_corner_normals;
 
 /// The points of a triangle at which light is computed once for all samples: its corners, or its face three times.
@@ -275,6 +276,7 @@ typedef struct glint_geometry_table {
     double reference[3], scale; ///< scale is a power of two
     double extent; ///< bound of every coordinate and radius, world units
     bool tori; ///< true: the scene has tori
+    bool moves; ///< true: some `corner_normals` have a terminator above 0
     const glint_corner_normals *corner_normals;
     const glint_solid *solids; ///< NULL: there are neither solids nor combined solids
     const glint_combined *combined;

@@ -196,9 +196,12 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
     if (prim->kind != GLINT_PRIM_TRIANGLE)
         slack = -NAME(POINT_SLACK) * NAME(largest)(point);
     bool back = NAME(dot)(n, direction) > 0;
-    if (prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS)
-        n = NAME(smooth_normal)(&args->corner_normals[prim->item], weight, n, back);
-    else if (back)
+    if (prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS) {
+        const glint_corner_normals *corners = &args->corner_normals[prim->item];
+        if (corners->terminator > 0)
+            point = NAME(toward_curve)(prim, corners, weight, n, back, point), slack = -slack;
+        n = NAME(smooth_normal)(corners, weight, n, back);
+    } else if (back)
         n = NAME(negated)(n);
     NAME(store)(args->point, i, point);
     if (args->normal[0])

@@ -116,6 +116,26 @@ static NAME(vec3)
     return NAME(dot)(s, back ? NAME(negated)(flat) : flat) < 0 ? NAME(negated)(s) : s;
 }
 
+/// Moves a point towards the surface that the normals at the corners describe (J. Hanika, "Hacking the Shadow
+/// Terminator", Ray Tracing Gems II, 2021).
+static NAME(vec3) NAME(toward_curve)(const glint_prim *prim, const glint_corner_normals *corners, const REAL weight[3],
+                                     NAME(vec3) flat, bool back, NAME(vec3) point)
+{
+    NAME(vec3) n[3], sum = NAME(vec)(0, 0, 0);
+    for (int j = 0; j < 3; j++)
+        n[j] = NAME(rounded)(corners->normal[j]);
+    NAME(vec3) curved = NAME(add)(NAME(add)(NAME(times)(n[0], weight[0]), NAME(times)(n[1], weight[1])),
+                                  NAME(times)(n[2], weight[2]));
+    bool away = NAME(dot)(curved, back ? NAME(negated)(flat) : flat) < 0;
+    for (int j = 0; j < 3; j++) {
+        NAME(vec3) q = NAME(sub)(point, NAME(rounded)(prim->corner[j]));
+        REAL l = NAME(length2)(n[j]), h = NAME(dot)(n[j], q), below = NAME(min)(away ? -h : h, 0);
+        REAL move = l > 0 ? (weight[j] * (away ? -below : below)) / l : 0;
+        sum = NAME(add)(sum, NAME(times)(n[j], move));
+    }
+    return NAME(sub)(point, NAME(times)(sum, (REAL)corners->terminator));
+}
+
 // ---- occlude ----
 
 typedef struct NAME(parted) {

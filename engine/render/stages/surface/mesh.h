@@ -10,7 +10,9 @@ typedef struct R(mesh_group) {
     _Alignas(64) double corner[3][3][GLINT_GROUP];
     _Alignas(64) double normal[3][GLINT_GROUP]; ///< geometric unit normals
     _Alignas(64) double corner_normal[3][3][GLINT_GROUP]; ///< normals at the three corners, in the lanes of `smooth`
+    _Alignas(64) double terminator[GLINT_GROUP]; ///< set with `corner_normal`; 0 in lanes outside of `smooth`
     unsigned smooth;
+    bool moves; ///< whether some `terminator` is above 0
 } R(mesh_group);
 
 /// Loads VR doubles, rounded.
@@ -61,14 +63,19 @@ static inline void R(load_corner_normals)(const glint_surface_args *args, size_t
                                           R(mesh_group) * mesh)
 {
     mesh->smooth = 0;
+    mesh->moves = false;
     for (; args->corner_normals && lanes; lanes &= lanes - 1) {
         const int lane = __builtin_ctz(lanes);
         const uint32_t item = args->prims[args->prim[at + (size_t)lane]].item;
         if (item == GLINT_MISS)
             continue;
-        if (!mesh->smooth)
+        if (!mesh->smooth) {
             memset(mesh->corner_normal, 0, sizeof mesh->corner_normal);
+            memset(mesh->terminator, 0, sizeof mesh->terminator);
+        }
         mesh->smooth |= 1u << lane;
+        mesh->terminator[lane] = args->corner_normals[item].terminator;
+        mesh->moves = mesh->moves || mesh->terminator[lane] > 0;
         for (int j = 0; j < 9; j++)
             mesh->corner_normal[j / 3][j % 3][lane] = args->corner_normals[item].normal[j / 3][j % 3];
     }

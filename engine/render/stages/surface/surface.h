@@ -168,9 +168,15 @@ INNER void R(find_lanes)(const glint_surface_args *args, R(seen_slot) * slot, R(
     R(face_viewer)(n, surface);
     if (smooth) {
         const vr facing[3] = { surface->normal[0], surface->normal[1], surface->normal[2] };
+        const glint_corner_normals *corners = &args->corner_normals[prim->item];
+        vr normal[3][3];
         for (int j = 0; j < 9; j++)
-            corner[j / 3][j % 3] = r_set(args->corner_normals[prim->item].normal[j / 3][j % 3]);
-        R(smooth_normal)(corner, w, n, facing, surface->normal);
+            normal[j / 3][j % 3] = r_set(corners->normal[j / 3][j % 3]);
+        if (corners->terminator > 0) {
+            R(toward_curve)(corner, normal, w, facing, r_set(corners->terminator), p);
+            surface->slack = -surface->slack;
+        }
+        R(smooth_normal)(normal, w, n, facing, surface->normal);
     }
 }
 
@@ -190,9 +196,14 @@ INNER void R(find_mesh_lanes)(const glint_surface_args *args, R(mesh_group) * me
     const unsigned smooth = mesh->smooth >> i & ((1u << VR) - 1);
     if (!smooth)
         return;
-    vr curved[3];
-    R(load_corners)(mesh->corner_normal, i, corner);
-    R(smooth_normal)(corner, w, n, surface->normal, curved);
+    vr curved[3], normal[3][3];
+    R(load_corners)(mesh->corner_normal, i, normal);
+    if (mesh->moves) {
+        const vr share = R(load_rounded)(mesh->terminator + i);
+        R(toward_curve)(corner, normal, w, surface->normal, share, surface->point);
+        surface->slack = r_select(r_lt(r_set(0), share), -surface->slack, surface->slack);
+    }
+    R(smooth_normal)(normal, w, n, surface->normal, curved);
     for (int k = 0; k < 3; k++)
         surface->normal[k] = r_select(rm_from_bits(smooth), curved[k], surface->normal[k]);
 }
