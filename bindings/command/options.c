@@ -304,7 +304,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       WITHIN(1, GLINT_SIDE_MAX), .group = "sheets" },
     { "label", 0, "TEXT", CLI_SHEET, read_text, .help = "text under each picture, with {name}, {file}, {frame}",
       AT(label) },
-    { "names", 0, "LIST", CLI_SHEET, read_text, .help = "AXIS=NAME,...: names of axes on the sheet", AT(names) },
+    { "names", 0, "LIST", CLI_SHEET, read_text, .help = "AXIS=NAME,VALUE=NAME,...: names of axes and values on the sheet", AT(names) },
     { "format", 0, "FORMAT", CLI_SHEET, read_text, .help = "format of numbers, such as %.2f; AXIS=FORMAT,... for some axes",
       AT(format) },
     { "title", 0, "TEXT", CLI_SHEET | CLI_PUBLISH | CLI_RELIGHT, read_text, .help = "text above the sheet or page", AT(title) },

@@ -30,7 +30,7 @@ static const glintL_field *own_fields(glintL_job_kind kind)
 glintL_job *glintL_push_job(lua_State *L, glintL_job_kind kind)
 {
     luaL_checkstack(L, 4, "job");
-    glintL_job *job = lua_newuserdatauv(L, sizeof *job, GLINTL_JOB_PLACE);
+    glintL_job *job = lua_newuserdatauv(L, sizeof *job, GLINTL_JOB_NAMES);
     job->self = job;
     job->kind = kind;
     job->frames = 1;

@@ -65,6 +65,61 @@ static void write_text(lua_State *L, glintL_run *run)
     lua_settop(L, list - 1);
 }
 
+// Adds the line "name=text" or "name:choice=text" to the text on top. spec: absolute; choice: 0 for the label.
+static void add_name(lua_State *L, int spec, lua_Integer choice)
+{
+    lua_getfield(L, spec, "name");
+    if (choice > 0) {
+        lua_pushliteral(L, ":");
+        lua_getfield(L, spec, "choices");
+        lua_rawgeti(L, -1, choice);
+        luaL_tolstring(L, -1, NULL);
+        lua_replace(L, -3);
+        lua_pop(L, 1);
+        lua_concat(L, 3);
+    }
+    lua_pushliteral(L, "=");
+    if (choice > 0) {
+        lua_getfield(L, spec, "names");
+        lua_rawgeti(L, -1, choice);
+        lua_remove(L, -2);
+    } else {
+        lua_getfield(L, spec, "label");
+    }
+    luaL_gsub(L, lua_tostring(L, -1), "\n", " ");
+    lua_remove(L, -2);
+    lua_pushliteral(L, "\n");
+    lua_concat(L, 5);
+}
+
+// Writes the labels of parameters and the names of their choices into the run.
+static void write_names(lua_State *L, glintL_run *run)
+{
+    glintL_push_params(L);
+    const int list = lua_gettop(L), spec = list + 2;
+    const lua_Integer count = luaL_len(L, list);
+    luaL_checkstack(L, 12, "params");
+    lua_pushliteral(L, "");
+    for (lua_Integer i = 1; i <= count; i++) {
+        lua_rawgeti(L, list, i);
+        lua_insert(L, list + 1); // below the text
+        const int at = list + 1;
+        lua_Integer choices = lua_getfield(L, at, "names") == LUA_TTABLE ? luaL_len(L, -1) : 0;
+        const bool has_label = lua_getfield(L, at, "label") == LUA_TSTRING;
+        lua_settop(L, spec);
+        if (has_label)
+            add_name(L, at, 0);
+        for (lua_Integer c = 1; c <= choices; c++)
+            add_name(L, at, c);
+        lua_remove(L, at);
+    }
+    free(run->names_text);
+    run->names_text = strdup(lua_tostring(L, -1));
+    if (!run->names_text)
+        luaL_error(L, "out of memory");
+    lua_settop(L, list - 1);
+}
+
 bool glintL_push_unknown_set(lua_State *L)
 {
     const glintL_run *run = glintL_get_run(L);
@@ -172,6 +227,7 @@ static int new_params(lua_State *L)
     lua_pushvalue(L, 3);
     lua_setiuservalue(L, 2, 1);
     write_text(L, run);
+    write_names(L, run);
     lua_settop(L, 2);
     return 1;
 }

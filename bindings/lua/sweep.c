@@ -85,6 +85,9 @@ void glintL_sweep_build(lua_State *L, int index, int64_t n)
     glintL_call_own(L, "sweep", "set_axes", 3, 2);
     lua_setiuservalue(L, index, GLINTL_JOB_SAVED);
     lua_setiuservalue(L, index, GLINTL_JOB_PLACE);
+    lua_getiuservalue(L, index, GLINTL_JOB_SHEET);
+    glintL_call_own(L, "sweep_sheet", "list_names", 1, 1);
+    lua_setiuservalue(L, index, GLINTL_JOB_NAMES);
 }
 
 void glintL_sweep_restore(lua_State *L, int index)

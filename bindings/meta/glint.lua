@@ -942,7 +942,7 @@ function glint.animation(fields) end
 --- the rows; all other axes make blocks.
 ---@class glint.sheet
 ---@field label? boolean|string|fun(values: table<string, any>, n: integer, pass: string): string  true: heads with the values of the axes; false: neither heads nor labels; a text under each picture, such as "n = {shininess}", which may also contain {file} and {frame}; or a function that returns this text. Default true
----@field names? table<string, string>  names of axes on the sheet, such as { shininess = "n" }, at most 100 bytes each. Default: the axes' own
+---@field names? table<string, string>  names of axes and of values on the sheet, such as { shininess = "n", blinn_phong = "Blinn-Phong" }, at most 100 bytes each; `glint sheet` finds them in the pictures. Default: the axes' own
 ---@field format? string|table<string, string>  how numbers are written, such as "%.2f": text with one %f, %e or %g; a table has a format for each axis, such as { shininess = "%.0f" }. Default: up to four digits
 ---@field passes? boolean  the passes that the sweep renders are an axis, the first one, after "beauty". Default false
 ---@field columns? integer  pictures per row of a .png, 1 .. 65535. Default: the number of values on the first axis

@@ -47,11 +47,24 @@ static bool join_sweeps(glintL_provenance *out, const glintL_run *run, const gli
     return true;
 }
 
+// Joins the names of the sweep's sheet and of the parameters. Returns false when out of memory.
+static bool join_names(glintL_provenance *out, const glintL_run *run, const glintL_work *work)
+{
+    const char *own = work->names ? work->names : "", *params = run->names_text ? run->names_text : "";
+    const size_t capacity = strlen(own) + strlen(params) + 1;
+    if (capacity == 1)
+        return true;
+    out->names = malloc(capacity);
+    if (out->names)
+        snprintf(out->names, capacity, "%s%s", own, params);
+    return out->names;
+}
+
 bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const glintL_work *work,
                             const glintL_file *file)
 {
     memset(out, 0, sizeof *out);
-    if (!join_sweeps(out, run, work))
+    if (!join_sweeps(out, run, work) || !join_names(out, run, work))
         return false;
     snprintf(out->frame, sizeof out->frame, "%" PRId64, work->index - run->point_first);
     list_options(&work->render, out->options, sizeof out->options);
@@ -64,6 +77,7 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
     add(out, "glint:pass", file->pass == GLINT_PASS_BEAUTY ? NULL : glintL_pass_name(work, file->pass, out->pass));
     add(out, "glint:options", out->options);
     add(out, "glint:sweep", out->sweep);
+    add(out, "glint:names", out->names);
     add(out, "glint:encoder", glint_encoder_name(work->render.encode));
     add(out, "glint:whole", file->whole);
     return true;
@@ -72,7 +86,8 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
 void glintL_provenance_drop(glintL_provenance *provenance)
 {
     free(provenance->sweep);
-    provenance->sweep = NULL;
+    free(provenance->names);
+    provenance->sweep = provenance->names = NULL;
 }
 
 // ---- Comparing ----

@@ -52,6 +52,7 @@ void glintL_run_destroy(glintL_run *run)
     free(run->request.folder);
     glintL_films_destroy(run->films);
     free(run->params_text);
+    free(run->names_text);
     glintL_forget_warnings(run);
     glintL_places_forget(run);
     glintL_forget_folders(run);
@@ -68,11 +69,12 @@ void glintL_run_reset(glintL_run *run)
     glintL_forget_warnings(run);
     glintL_places_forget(run);
     free(run->params_text);
+    free(run->names_text);
     run->explain_plan = NULL;
     run->explain_order = NULL;
     run->deferred = NULL;
     run->films = NULL;
-    run->params_text = NULL;
+    run->params_text = run->names_text = NULL;
     run->source[0] = '\0';
     run->count = run->call_count = run->selected_calls = 0;
     run->total = run->todo = run->done = run->kept = 0;

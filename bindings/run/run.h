@@ -230,6 +230,7 @@ typedef struct glintL_work {
     glint_frame_stats stats;
     double error; ///< the estimate, if the run refines frames
     char *sweep; ///< owned; "name=value" lines: the frame's place in a glint.sweep; NULL: none
+    char *names; ///< owned; "axis=text" lines: `names` of the sweep's sheet; NULL: none
     struct glintL_film *film;
     int file_count;
     glintL_file *files; ///< owned
@@ -313,6 +314,7 @@ struct glintL_run {
     int64_t files_pending;
     glintL_work *deferred; ///< the first call, until it is known whether there is a second
     char *params_text; ///< owned; "name=value" lines
+    char *names_text; ///< owned; lines "name=label" and "name:choice=text" of parameters that have them
     glintL_written *written; ///< owned
     size_t written_count, written_capacity;
     struct timespec written_since; ///< files with a later time are of this run or of one beside it
@@ -540,7 +542,7 @@ void glintL_find_source(lua_State *L, glintL_run *run);
 
 // ---- provenance.c ----
 
-#define GLINTL_TEXT_COUNT 11
+#define GLINTL_TEXT_COUNT 12
 
 /// The text entries of a file: its origin, and everything needed to render it again.
 typedef struct glintL_provenance {
@@ -550,6 +552,7 @@ typedef struct glintL_provenance {
     char frame[24]; ///< number in the script
     char options[1024]; ///< "name=value" lines: the options of the frame
     char *sweep; ///< owned; "name=value" lines: the axes of glint.sweep, then of --sweep; NULL: none
+    char *names; ///< owned; "axis=text" and "axis:value=text" lines of the sweep's sheet, then of the parameters; NULL: none
 } glintL_provenance;
 
 /// Fills the entries. False: out of memory, and there is nothing to free. The texts point into the arguments and into
@@ -573,7 +576,8 @@ typedef enum glintL_job_kind { GLINTL_JOB_ANIMATION, GLINTL_JOB_SWEEP } glintL_j
 #define GLINTL_JOB_FRAME 2 ///< the frame function or the list of axes;
 #define GLINTL_JOB_SHEET 3 ///< the sheet;
 #define GLINTL_JOB_SAVED 4 ///< the original values of the fields that a sweep changes;
-#define GLINTL_JOB_PLACE 5 ///< "name=value" lines of the sweep's current frame
+#define GLINTL_JOB_PLACE 5 ///< "name=value" lines of the sweep's current frame;
+#define GLINTL_JOB_NAMES 6 ///< "axis=text" lines of the sweep's sheet
 
 typedef struct glintL_job {
     void *self; ///< not NULL, since messages treat a userdata with NULL here as a closed object

@@ -37,11 +37,11 @@ static int drop_picture(lua_State *L)
 // is none.
 static int read_picture(lua_State *L)
 {
-    static const char *const texts[] = { "sweep", "params", "options", "pass", "frame" };
+    static const char *const texts[] = { "sweep", "names", "params", "options", "pass", "frame" };
     char keyword[32];
     glint_error error;
     lua_settop(L, 1);
-    lua_createtable(L, 0, 9);
+    lua_createtable(L, 0, 10);
     glint_picture **picture = glintL_push_owner(L, sizeof *picture, PICTURE, drop_picture);
     const glint_status status = glint_picture_read(luaL_checkstring(L, 1), false, picture, &error);
     if (status) {

@@ -2,7 +2,8 @@
 -- C reads the files and draws.
 --
 -- A sheet has `path` and the list `files`, its cells row by row, and any of: `positions` ("name=value" lines of each
--- cell, otherwise read from the file), `labels`, `names` ("axis=text" lines), `formats` ("axis=format" lines; an empty
+-- cell, otherwise read from the file), `labels`, `names` ("axis=text", "value=text" and "axis:value=text" lines; the
+-- file's come after them), `formats` ("axis=format" lines; an empty
 -- axis stands for all others), `label` (with {name} for a value, or "none"), `title`, `columns`, `difference`, `gain`,
 -- `size`, `dpi`, `transparent`, `colorbar`, `mixes` (files may come from different scripts or settings), `live`.
 local the = ...
@@ -81,15 +82,16 @@ local function check_known(field, lines, axes, has_default)
     local name, near = match(line, "^[^=]*"), nil
     if not finder.find_line(axes, name) and not (has_default and name == "") then
       for _, axis in ipairs(finder.split_lines(axes)) do near = the.nearer(name, near, match(axis, "^[^=]*")) end
-      return format("%s: the sheet has no axis '%s'%s", field, sub(name, 1, NAME_MAX),
-        near and format("; did you mean '%s'?", near) or "")
+      return format("%s: the sheet has no axis%s '%s'%s", field, has_default and "" or " or value",
+        sub(name, 1, NAME_MAX), near and format("; did you mean '%s'?", near) or "")
     end
   end
 end
 
--- Checks that `names` and `formats` are of axes in `axes`, which has "axis=..." lines. Returns what is wrong, or nil.
-function M.check_axes(sheet, axes)
-  return check_known("names", sheet.names, axes, false) or check_known("format", sheet.formats, axes, true)
+-- Checks that `formats` are of axes in `axes`, which has "axis=..." lines, and that `names` are of axes and values in
+-- `values`, which has "axis=..." and "value=..." lines. Returns what is wrong, or nil.
+function M.check_axes(sheet, axes, values)
+  return check_known("names", sheet.names, values, false) or check_known("format", sheet.formats, axes, true)
 end
 
 -- ---- Names, values and labels ----
@@ -99,6 +101,8 @@ function M.axis_title(sheet, axis) return finder.find_line(sheet.names, axis.nam
 -- Returns value `i` of an axis as the sheet shows it.
 function M.spell_value(sheet, axis, i)
   local value = axis.values[i]
+  local name = finder.find_line(sheet.names, axis.name .. ":" .. value) or finder.find_line(sheet.names, value)
+  if name then return name end
   local number = tonumber(value)
   if not number then return sub(value, 1, 60) end
   local given = finder.find_line(sheet.formats, axis.name) or finder.find_line(sheet.formats, "")
@@ -265,13 +269,16 @@ function M.make(sheet)
   local is_page = M.ends_in(sheet.path, "html")
   local axes, lines = difference and { cells = #pictures } or finder.find(sheet, pictures, is_page), {}
   for i, axis in ipairs(axes) do lines[i] = axis.name .. "=\n" end
+  local known = concat(lines)
+  for _, axis in ipairs(axes) do known = known .. concat(axis.values, "=\n") .. "=\n" end
   local columns = columns_of(sheet, axes)
   axes.across = axes.is_grid and count_across(axes, columns)
   axes.frames_differ = not difference and frames_differ(pictures)
   axes.has_heads = axes.is_grid and not sheet.labels and not sheet.label -- heads name the values of the axes
   axes.is_wrapped = #axes == 1 and not is_page and columns < #axes[1].values -- a value below each picture instead
-  wrong = M.check_axes(sheet, concat(lines)) or check_columns(sheet, axes)
+  wrong = M.check_axes(sheet, concat(lines), known) or check_columns(sheet, axes)
   if wrong then return USAGE, wrong end
+  sheet.names = (sheet.names or "") .. "\n" .. (pictures[1].names or "")
   local labels, unknown = make_labels(sheet, axes, pictures)
   if not labels then return USAGE, unknown end
   local code

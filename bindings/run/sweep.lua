@@ -113,6 +113,16 @@ function M.place_of_frame(axes, n)
   return concat(lines, "\n")
 end
 
+-- Returns the lines "axis=" and "value=" for all axes and values: the names that a sheet can give a text.
+function M.list_values(axes)
+  local lines = {}
+  for a, axis in ipairs(axes) do
+    lines[#lines + 1] = name_of(axes, a) .. "="
+    for i, value in ipairs(axis[3]) do lines[#lines + 1] = spell(value, i) .. "=" end
+  end
+  return concat(lines, "\n")
+end
+
 -- Returns the table name -> value for frame n.
 function M.values_of_frame(axes, n)
   local values = {}

@@ -5,7 +5,7 @@
 local the = ...
 local M, sheets, sweep = {}, the.sheet, the.sweep
 local format, find, match, gmatch = string.format, string.find, string.match, string.gmatch
-local concat, ipairs, next, tostring, type = table.concat, ipairs, next, tostring, type
+local concat, sort, ipairs, next, tostring, type = table.concat, table.sort, ipairs, next, tostring, type
 local floor, tointeger = math.floor, math.tointeger
 
 -- ---- Checking ----
@@ -78,8 +78,12 @@ local function lines_of(field)
   if type(field) == "string" then return "=" .. field end
   local lines = {}
   for axis, name in next, field or {} do lines[#lines + 1] = axis .. "=" .. name .. "\n" end
+  sort(lines) -- they are stored in files
   return concat(lines)
 end
+
+-- Returns the names that the sheet of a sweep gives to axes and values, as lines. sheet: nil if there is none.
+function M.list_names(sheet) return lines_of(sheet and sheet.names) end
 
 local function describe(sheet, path)
   local template = sheet.label
@@ -92,8 +96,9 @@ end
 -- Checks a sheet against the axes of its sweep.
 function M.check(sheet, axes, frames)
   local lines = sweep.place_of_frame(axes, 1) .. (sheet.passes and "\npass=" or "")
+  local names = sweep.list_values(axes) .. (sheet.passes and "\npass=" or "")
   local described = describe(sheet, sheet.output or "sheet.png")
-  local wrong = sheets.check(described, frames) or sheets.check_axes(described, lines)
+  local wrong = sheets.check(described, frames) or sheets.check_axes(described, lines, names)
   if wrong then the.raise("sweep.sheet." .. wrong) end
   for name in gmatch(type(sheet.label) == "string" and sheet.label or "", "{([^}]*)}") do
     if not the.sheet_axes.find_line(lines, name) and name ~= "file" and name ~= "frame" then

@@ -197,8 +197,11 @@ static bool keep_place(glintL_walk *walk, glintL_work *work)
     lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_PLACE);
     const char *place = lua_tostring(walk->L, -1);
     work->sweep = strdup(place ? place : "");
-    lua_pop(walk->L, 1);
-    if (work->sweep)
+    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_NAMES);
+    const char *names = lua_tostring(walk->L, -1);
+    work->names = strdup(names ? names : "");
+    lua_pop(walk->L, 2);
+    if (work->sweep && work->names)
         return true;
     glintL_run_fail(walk->run, GLINTL_EXIT_FAILED, work->index, "out of memory");
     glintL_work_destroy(work);

@@ -76,6 +76,7 @@ void glintL_work_destroy(glintL_work *work)
     glint_image_release(work->image);
     free(work->files);
     free(work->sweep);
+    free(work->names);
     free(work);
 }
 

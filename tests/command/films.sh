@@ -111,7 +111,41 @@ exits 3 "make another sheet" compare again.png names.png
 exits 0 "a page of them" sheet grid/000*.png -o names.html --names shininess=n --format '%.1f'
 check "has both" grep -q 'name: "n", values: \["1.0", "4.0", "16.0"\]' names.html
 exits 0 "a single row" sheet grid/000[123].png -o row.png
-for wrong in "names shinines=n:names: the sheet has no axis .shinines.; did you mean .shininess." "names n:names: AXIS=TEXT expected, got 'n'" \
+cat >named.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { size = { 1, min = 0.5, max = 2, label = "Radius $r$" },
+  tone = { "dark", choices = { "dark", "light" }, names = { dark = "Night", light = "Day" } } }
+local red = glint.material { specular = 0.6 }
+return glint.sweep { width = 16, height = 12, output = "named/%04d.png", over = { { red, "shininess", { 4, 64 } }, { red, "model", { "phong", "blinn_phong" } } },
+  sheet = { output = "named/sheet.html", names = { shininess = "n", model = "Model", blinn_phong = "Blinn-Phong", ["64"] = "sharp" } },
+  scene = glint.scene { camera = glint.camera { eye = { 0, 0, 8 }, at = { 0, 0, 0 } }, ambient = P.tone == "dark" and 0.1 or 0.9,
+    glint.point_light { position = { 3, 5, 4 } }, glint.sphere { center = { 0, 0, 0 }, radius = P.size, material = red } } }
+LUA
+exits 0 "a sheet with names for values" named.lua
+has_axes() { # PAGE AXIS...
+    local page=$1
+    shift
+    for axis; do check "$page: $axis" grep -qF "$axis" "$page"; done
+}
+has_axes named/sheet.html 'name: "n", values: ["4", "sharp"]' 'name: "Model", values: ["phong", "Blinn-Phong"]'
+exits 0 "files have the names" sheet 'named/%04d.png' -o later.html
+has_axes later.html 'name: "n", values: ["4", "sharp"]' 'name: "Model", values: ["phong", "Blinn-Phong"]'
+exits 0 "other names win" sheet 'named/%04d.png' -o renamed.html --names shininess=s,phong=Phong
+has_axes renamed.html 'name: "s", values: ["4", "sharp"]' 'name: "Model", values: ["Phong", "Blinn-Phong"]'
+exits 2 "a value that the sheet lacks" sheet 'named/%04d.png' -o wrong.html --names phon=Phong
+says "a value that the sheet lacks" "names: the sheet has no axis or value 'phon'; did you mean 'phong'"
+sed '/return/,$d' named.lua >swept.lua
+cat >>swept.lua <<'LUA'
+return glint.animation { frames = 1, width = 16, height = 12, scene = glint.scene { ambient = P.tone == "dark" and 0.1 or 0.9,
+  camera = glint.camera { eye = { 0, 0, 8 }, at = { 0, 0, 0 } }, glint.sphere { center = { 0, 0, 0 }, radius = P.size } } }
+LUA
+exits 0 "parameters with labels" swept.lua --sweep tone=dark,light --sweep size=1:2:2 -o 'swept/%04d.png'
+exits 0 "a sheet of them" sheet 'swept/%04d.png' -o labels.html
+has_axes labels.html 'name: "tone", values: ["Night", "Day"]' 'name: "Radius $r$", values: ["1", "2"]'
+cp swept/0001.png before.png
+exits 0 "the same frames" swept.lua --sweep tone=dark,light --sweep size=1:2:2 -o 'swept/%04d.png' --force
+check "have the same bytes" cmp before.png swept/0001.png
+for wrong in "names shinines=n:names: the sheet has no axis or value .shinines.; did you mean .shininess." "names n:names: AXIS=TEXT expected, got 'n'" \
     "names shininess=:names: a name of 1 .. 100 bytes expected, got 0" "names shininess=$(printf '%0101d' 0):names: a name of 1 .. 100 bytes expected, got 101" \
     'format %d:format: .*such as %.2f' 'format %s:format: .*got .%s.' 'format %n:format:' 'format %f%f:format:' 'format %:format:' 'format x:format:' \
     'format %*f:format:' 'format %.999f:format:' 'format %lf:format:' 'format specula=%f:format: the sheet has no axis .specula.; did you mean .specular.'; do
@@ -185,7 +219,7 @@ for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: wh
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
     '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: expected together with difference' \
     '{ output = "x.html", columns = 2 }:columns: not for pages; a page has one column for each value of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' \
-    '{ names = { shinines = "n" } }:names: the sheet has no axis .shinines.; did you mean .shininess.' '{ names = "n" }:names: table' '{ names = { shininess = 5 } }:names: table' \
+    '{ names = { shinines = "n" } }:names: the sheet has no axis or value .shinines.; did you mean .shininess.' '{ names = "n" }:names: table' '{ names = { shininess = 5 } }:names: table' \
     '{ format = "%d" }:format: .*got .%d.' '{ format = { specular = "%s" } }:format: .*got .%s.' '{ format = 3 }:format: text' '{ format = "%f\n%f" }:format: AXIS=TEXT' '{ passes = 1 }:passes: boolean' '{ size = 0 }:size: points' \
     '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: has no effect' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
