@@ -75,6 +75,8 @@ web_required='
 emscripten      command:emcc
 nodejs          command:node
 npm             command:npm
+fonts-dejavu-core file:/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
+python3-fonttools file:/usr/lib/python3/dist-packages/fontTools
 '
 package_optional='
 dpkg-dev        command:dpkg-buildpackage

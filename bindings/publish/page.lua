@@ -32,14 +32,14 @@ end
 
 -- Reads the engine for pages, renders the frame, and reads the script's files.
 local function make_page(my)
-  local wasm, engine = read_part(my, "glint.wasm.gz"), read_part(my, "publish.js")
+  local wasm, engine, font = read_part(my, "glint.wasm.gz"), read_part(my, "publish.js"), read_part(my, "glint.ttf.gz")
   if not (wasm and engine) then
     error(my.who .. ": the engine for pages is missing (glint.wasm.gz, publish.js). Build it with `make web`, then run "
       .. "build/glint, or install glint again", 0)
   end
   local page = my.render()
   page.title = page.title or title_of(page.script)
-  page.wasm, page.engine, page.source = wasm, engine, must_read(page.path)
+  page.wasm, page.engine, page.font, page.source = wasm, engine, font, must_read(page.path)
   page.folder = page.path:match "^.*/" or ""
   for name, path in pairs(page.files) do page.files[name] = must_read(path) end
   return page
@@ -105,13 +105,16 @@ local function check_controls(page)
   end
 end
 
+-- The font of labels; without it they are of the bitmap font.
+local FONT <const> = '<script type="application/octet-stream" id="glint-font">%s</script>\n'
+
 local FIGURE <const> = [[
 <glint-figure @ATTRIBUTES@ style="max-width: @WIDTH@px">
 <img src="data:image/png;base64,@POSTER@" width="@WIDTH@" height="@HEIGHT@" alt="@TITLE@">
 </glint-figure>
 <script type="application/json" id="glint-job">@JOB@</script>
 <script type="application/octet-stream" id="glint-wasm">@WASM@</script>
-<script type="module">@ENGINE@</script>
+@FONT@<script type="module">@ENGINE@</script>
 ]]
 
 local function fill(template, values)
@@ -124,7 +127,8 @@ local function figure_of(page)
   local files, same = files_of(page)
   return fill(FIGURE, {
     TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height, ATTRIBUTES = attributes_of(page),
-    POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), ENGINE = page.engine,
+    POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), FONT = page.font and FONT:format(the.base64(page.font)) or "",
+    ENGINE = page.engine,
     JOB = embedded(
       { name = page.script, text = page.source, files = files, same = same, values = values_of(page.params) },
       the.params(page.params)),

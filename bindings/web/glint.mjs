@@ -117,7 +117,7 @@ class Host {
     this.#isReopening = first !== asked.message
     this.#since = performance.now()
     this.#watch()
-    this.#worker.postMessage({ ...first, ...(first.call === "open" ? { module: this.#engine.module } : {}) })
+    this.#worker.postMessage({ ...first, ...(first.call === "open" ? { module: this.#engine.module, font: this.#engine.font } : {}) })
   }
   #watch() {
     clearTimeout(this.#timer)
@@ -221,20 +221,37 @@ class Job {
 
 // ---- The engine ----
 
-async function compile(wasm) {
-  if (wasm instanceof WebAssembly.Module) return wasm
-  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm)
-  const url = new URL(wasm ?? "glint.wasm", import.meta.url)
-  if (isNode && url.protocol === "file:") return WebAssembly.compile(await (await import("node:fs/promises")).readFile(url))
+
+// Returns the answer of a server, or a file's, for a file next to this module.
+async function fetched(address) {
+  const url = new URL(address, import.meta.url)
+  if (isNode && url.protocol === "file:") return new Response(await (await import("node:fs/promises")).readFile(url))
   const answer = await fetch(url)
   if (!answer.ok) throw new GlintError(`${url}: ${answer.status} ${answer.statusText}`)
-  return WebAssembly.compile(await answer.arrayBuffer()) // the server may send any content type
+  return answer
+}
+
+const areBytes = value => value instanceof ArrayBuffer || ArrayBuffer.isView(value)
+
+async function compile(wasm) {
+  if (wasm instanceof WebAssembly.Module) return wasm
+  if (areBytes(wasm)) return WebAssembly.compile(wasm)
+  const answer = await fetched(wasm) // a server that knows the type lets the browser compile while it loads
+  const isStream = answer.headers.get("content-type") === "application/wasm"
+  return isStream ? WebAssembly.compileStreaming(answer) : WebAssembly.compile(await answer.arrayBuffer())
+}
+
+async function readFont(font) {
+  if (areBytes(font)) return new Uint8Array(font)
+  const answer = font === true ? await fetched("glint.ttf").catch(() => null) : await fetched(font)
+  return answer ? new Uint8Array(await answer.arrayBuffer()) : undefined
 }
 
 class Engine {
   #make
-  constructor(module, make) {
+  constructor(module, font, make) {
     this.module = module
+    this.font = font
     this.#make = make
   }
   // Starts a worker. `take` receives its messages; `fail` is called when the worker cannot continue.
@@ -253,14 +270,18 @@ class Engine {
 
 /**
  * Loads the engine. wasm: glint.wasm as a URL, bytes or a module; worker: the URL of worker.mjs. With a blob URL, the
- * text of worker.mjs runs in an async function.
+ * text of worker.mjs runs in an async function. font: a TrueType font as a URL or bytes; true: glint.ttf next to
+ * glint.mjs, which has letters of DejaVu Sans; without a font, letters are of the bitmap font.
  */
-export async function load({ wasm, worker } = {}) {
+export async function load({ wasm = "glint.wasm", worker, font } = {}) {
   const url = new URL(worker ?? "worker.mjs", import.meta.url)
   const isBlob = url.protocol === "blob:" // a page opened from disk cannot make a module worker from a blob
   const Worker = isNode ? (await import("node:worker_threads")).Worker : globalThis.Worker
-  const engine = new Engine(await compile(wasm), () => new Worker(url, isBlob ? {} : { type: "module" }))
+  const [module, letters] = await Promise.all([compile(wasm), font && readFont(font)])
+  const engine = new Engine(module, letters, () => new Worker(url, isBlob ? {} : { type: "module" }))
   return {
+    /** The bytes of the font; undefined: the bitmap font. */
+    font: letters,
     /** Runs a script. files: { name: text or bytes } to read; set: { name: value }; seconds: limit of each call. */
     async open(source, { name = "scene.lua", files = {}, set = {}, seconds = 10, signal } = {}) {
       const given = spellAll(set)

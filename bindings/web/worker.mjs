@@ -4,6 +4,7 @@
 // A message is { call, ... }; the answer is { result } or { failed: message }. { rendering } says whether the current
 // time counts for a render rather than the script.
 
+const FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf" // where glint looks for it
 const MESSAGE_LINES = 1000 // lines that a script may print in one call
 
 const port = globalThis.process?.versions?.node ? (await import("node:worker_threads")).parentPort : globalThis
@@ -39,10 +40,11 @@ function check(good) {
 
 const warnings = () => text("web_warnings").split("\n").filter(line => line !== "")
 
-// Writes a file to the file system in memory, with its folders.
+// Writes a file to the file system in memory, with its folders. A relative path begins in /job.
 function write(path, bytes) {
-  engine.FS.mkdirTree(`/job/${path.slice(0, path.lastIndexOf("/") + 1)}`)
-  engine.FS.writeFile(path, bytes)
+  const whole = path.startsWith("/") ? path : `/job/${path}`
+  engine.FS.mkdirTree(whole.slice(0, whole.lastIndexOf("/") + 1))
+  engine.FS.writeFile(whole, bytes)
 }
 
 const describe = () => ({
@@ -62,7 +64,7 @@ function run(given) {
   sets = key
 }
 
-async function open({ module, name, source, files, set, seconds }) {
+async function open({ module, font, name, source, files, set, seconds }) {
   globalThis.self ??= globalThis // the loader expects it in a worker
   globalThis.location ??= { href: "" }
   engine = await createGlint({
@@ -73,6 +75,7 @@ async function open({ module, name, source, files, set, seconds }) {
       return {}
     },
   })
+  if (font) write(FONT, font)
   engine.FS.mkdir("/job")
   engine.FS.chdir("/job")
   for (const [path, bytes] of Object.entries(files)) write(path, bytes)

@@ -208,6 +208,13 @@ await test("layers: the command's picture without overlays, and the overlays for
   assert(Math.abs(x - 320) < 0.01 && Math.abs(y - (200 - k * limb)) < 1, `the arrow begins at ${x}, ${y}; ${200 - k * limb}`)
   assert(Math.abs(/<path d="M([\d.]+) /.exec(narrow)[1] - 195) < 0.01)
   for (const size of numbers(narrow, /font-size="([\d.]+)"/g)) assert(size >= 12, `letters of ${size} pixels`)
+  // with the font, letters are the command's with DejaVu Sans
+  const lettered = await (await load({ font: true })).open(vectors, { name: "vectors.lua" }), image = await lettered.render({ width: 320, height: 200 })
+  const { GLINT_FONT, ...environment } = process.env
+  execFileSync(GLINT, ["tests/web/vectors.lua", "--size", "320x200", "--quiet", "--force", "-o", `${OUT}/vectors.png`], { env: environment })
+  assert(sameBits(image.rgba, decode(fs.readFileSync(`${OUT}/vectors.png`)).rgba), "the command's letters")
+  assert.match((await lettered.render(page(390, 244, 12))).marks, /font-family="DejaVu Sans, /)
+  lettered.close()
   await assert.rejects(job.render(page(0, 10, 12)), /page.width: expected 1 \.\. 65535, got 0/)
   job.close()
 })

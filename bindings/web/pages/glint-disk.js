@@ -1,7 +1,8 @@
 // Live figures of a page that is opened from a disk, where a browser loads neither modules nor data: the engine is in
 // this script.
-import base64 from "./glint.wasm.gz"
+import wasm from "./glint.wasm.gz"
+import font from "./glint.ttf.gz"
 import { loadFrom } from "./inside.js"
 import { useEngine } from "./glint-figure.js"
 
-useEngine(loadFrom(base64))
+useEngine(loadFrom(wasm, font))

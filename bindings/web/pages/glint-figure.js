@@ -21,19 +21,18 @@
 // `figure.set({ n: 32 })` changes some. Each change by the reader sends the event "value" with the `detail`
 // { name, value, moving }. Each finished picture sends "glint-render" with { image, coarse, ms }, and again when image.error is
 // known. coarse: a better picture follows. An error sends "glint-error" with { error }.
-import { load } from "./glint.mjs"
 import { control, controlStyle, parsed, spelled } from "./controls.js"
 import { Gestures, gestureStyle, orbitOf, STILL, viewOf } from "./gestures.js"
 import { copyLink, readLink } from "./link.js"
 import { Player } from "./player.js"
-import { quality, Renderer, show, wait } from "./renderer.js"
+import { loadWithFont, quality, Renderer, show, wait } from "./renderer.js"
 import { listed, sourceOf } from "./source.js"
 
 const OWN = ["src", "files", "controls", "width", "height", "frame", "timing", "id", "class", "style", "title", "lang", "dir", "hidden", "slot",
   "role", "tabindex", "part", "is", "name", "data", "inert", "draggable", "translate", "autofocus", "nonce", "popover"]
 
 let engine // one for all figures of a page
-const engineOfPage = () => engine ??= load()
+const engineOfPage = () => engine ??= loadWithFont()
 
 // Makes the page's figures use this promise of an engine. Call it before the first figure starts.
 export function useEngine(promise) {

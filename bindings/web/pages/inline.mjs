@@ -1,20 +1,27 @@
 // Writes a page with the script of each figure inside its element, with the parameters of the script, and with a link to
 // the playground, so that the page works from a disk and has its controls before the engine has started.
-//   node inline.mjs PAGE SCRIPTS GLINT
-// PAGE is a page with <glint-figure src="...">, SCRIPTS the folder of scripts, GLINT the command.
-import { execFileSync } from "node:child_process"
+//   node inline.mjs PAGE SCRIPTS WEB
+// PAGE is a page with <glint-figure src="...">, SCRIPTS the folder of scripts. WEB contains the module.
 import { readFileSync } from "node:fs"
-import { join } from "node:path"
+import { basename, join, resolve } from "node:path"
+import { pathToFileURL } from "node:url"
 
-const [page, scripts, glint] = process.argv.slice(2)
+const [page, scripts, web] = process.argv.slice(2)
+const glint = await (await import(pathToFileURL(resolve(web, "glint.mjs")))).load()
 const html = text => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;")
 const safe = text => text.replace(/<(?=\/|!--|script)/gi, "\\u003c") // in JSON
 
-process.stdout.write(readFileSync(page, "utf8").replace(/(<glint-figure src="([^"]*)"[^>]*>)([^]*?<\/glint-figure>)/g, (_, opening, src, rest) => {
+// Returns an opening tag with the script and its parameters after it, and a link after the element.
+async function inlined([, opening, src, rest]) {
   const path = join(scripts, src.replace(/^examples\//, "")), script = readFileSync(path, "utf8")
   if (/<\/script|<!--/i.test(script)) throw new Error(`${path}: has </script or <!--, which ends a script element`)
-  const { params } = JSON.parse(execFileSync(glint, ["describe", path, "--json"], { encoding: "utf8" }))
-  return `${opening}<script type="text/x-lua" name="${html(src.split("/").pop())}">\n${script}</script>\n`
-    + `<script type="application/json" class="params">${safe(JSON.stringify(params))}</script>\n${rest}\n`
+  const job = await glint.open(script, { name: basename(path) })
+  job.close()
+  return `${opening}<script type="text/x-lua" name="${html(basename(path))}">\n${script}</script>\n`
+    + `<script type="application/json" class="params">${safe(JSON.stringify(job.params))}</script>\n${rest}\n`
     + `<p class="open"><a href="index.html#src=${html(src)}">Open ${html(src)} in the playground</a></p>`
-}))
+}
+
+const text = readFileSync(page, "utf8"), figures = /(<glint-figure src="([^"]*)"[^>]*>)([^]*?<\/glint-figure>)/g
+const texts = await Promise.all([...text.matchAll(figures)].map(inlined))
+process.stdout.write(text.replace(figures, () => texts.shift()))

@@ -1,12 +1,13 @@
 // The engine of a page that has it inside.
-import { load } from "./glint.mjs"
+import { loadWithFont } from "./renderer.js"
 import { bytesOf } from "./source.js"
 import workerText from "./worker.txt"
 
-// Loads the engine from the base64 of glint.wasm.gz.
-export async function loadFrom(base64) {
-  const squeezed = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("gzip"))
-  const wasm = await new Response(squeezed).arrayBuffer()
+const unzipped = base64 => new Response(new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer()
+
+// Loads the engine from the base64 of glint.wasm.gz and of glint.ttf.gz, which may be missing.
+export async function loadFrom(...texts) {
+  const [wasm, font = null] = await Promise.all(texts.filter(Boolean).map(unzipped))
   const worker = new Blob(["(async () => {", workerText, "\n})()"], { type: "text/javascript" })
-  return load({ wasm, worker: URL.createObjectURL(worker) })
+  return loadWithFont({ wasm, font, worker: URL.createObjectURL(worker) })
 }

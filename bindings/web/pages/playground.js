@@ -6,14 +6,13 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/
 import { lua } from "@codemirror/legacy-modes/mode/lua"
 import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
-import { load } from "./glint.mjs"
 import { control, controlStyle } from "./controls.js"
-import { quality, Renderer, show, wait } from "./renderer.js"
+import { loadWithFont, quality, Renderer, show, wait } from "./renderer.js"
 
 const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
 document.head.append(Object.assign(document.createElement("style"), { textContent: controlStyle }))
-const engine = load()
+const engine = loadWithFont()
 
 let examples = []
 let job, renderer, files = {}, name = "scene.lua"

@@ -1,4 +1,5 @@
 // Pictures of a job: in which order, in which size and with how many samples they are rendered, and how they are shown.
+import { load } from "./glint.mjs"
 import { written } from "./controls.js"
 
 const REST_MS = 150         // after this time without changes the picture gets its full size and samples
@@ -13,6 +14,13 @@ const WAIT_MS = 500         // shortest time that is shown as a line
 const SAMPLES = 4           // fewest samples of a pixel at rest
 const LETTERS = 12          // smallest size of letters, CSS pixels
 const DENSITY = 2           // most pixels rendered per CSS pixel, in each direction
+
+// Loads the engine with a font, in which the page shows the overlays, too. options: as of load; font is by default true.
+export async function loadWithFont({ font = true, ...options } = {}) {
+  const glint = await load({ font, ...options })
+  if (glint.font) document.fonts.add(await new FontFace("DejaVu Sans", glint.font).load())
+  return glint
+}
 
 // Returns the picture's samples and error as text; "" for a scene of one sample.
 export function quality({ samples, ownSamples, error, trusted }) {

@@ -1,0 +1,12 @@
+// Renders the first picture of a script, as `glint SCRIPT -o OUT` does.
+//   node picture.mjs WEB SCRIPT OUT [WIDTH HEIGHT]
+// WEB contains the module and its font.
+import { readFileSync, writeFileSync } from "node:fs"
+import { basename, resolve } from "node:path"
+import { pathToFileURL } from "node:url"
+
+const [web, script, out, width, height] = process.argv.slice(2)
+const { load } = await import(pathToFileURL(resolve(web, "glint.mjs")))
+const job = await (await load({ font: true })).open(readFileSync(script, "utf8"), { name: basename(script), seconds: 300 })
+writeFileSync(out, (await job.render(width ? { width, height } : {})).png())
+job.close()

@@ -1,0 +1,112 @@
+// Tests the sizes of a live figure's pictures with a clock of its own: a job whose pictures take a given time.
+import assert from "node:assert/strict"
+import fs from "node:fs"
+import os from "node:os"
+import path from "node:path"
+import { pathToFileURL } from "node:url"
+
+// The pages' modules, without the engine.
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "glint-"))
+for (const name of ["renderer.js", "controls.js"]) fs.copyFileSync(`bindings/web/pages/${name}`, path.join(folder, name))
+fs.writeFileSync(path.join(folder, "glint.mjs"), "export const load = null")
+fs.writeFileSync(path.join(folder, "package.json"), '{ "type": "module" }')
+const { Renderer } = await import(pathToFileURL(path.join(folder, "renderer.js")))
+process.on("exit", () => fs.rmSync(folder, { recursive: true }))
+
+let bad = 0
+async function test(name, run) {
+  try {
+    await run()
+    console.log(`ok - ${name}`)
+  } catch (error) {
+    bad++
+    console.log(`not ok - ${name}\n${String(error.stack ?? error).slice(0, 2000)}`)
+  }
+}
+
+// A figure of 640 x 400 CSS pixels whose pictures take `fixed` ms and `sample` ms for each sample, on a clock that only
+// pictures move. steps: the limits of samples of its pictures at rest.
+function figure({ fixed, sample, density = 1, samples = 1 }) {
+  const seen = [], clock = { time: 0, now: () => clock.time }
+  let wake
+  const picture = ({ width, height, samples: wanted = samples, ...rest }, done = wanted) => {
+    clock.time += fixed() + sample() * width * height * done
+    return { width, height, samples: done, ownSamples: wanted, pixelMs: sample() * width * height * done, ...rest }
+  }
+  const job = { samples, render: async options => picture(options), another: async () => job, close: () => {},
+    async *steps(options) {
+      for (let done = 1; done < (options.samples ?? samples); done *= 2) yield picture(options, done)
+      yield picture(options)
+    } }
+  const one = { seen, clock, fail: undefined }
+  const renderer = new Renderer(job, { page: () => ({ width: 640, height: 400 }), density: () => density, clock,
+    shown: (image, how) => { seen.push({ ...image, ...how }); wake?.() }, failed: error => { one.fail = error; wake?.() } })
+  const next = () => new Promise(done => { wake = done })
+  one.step = async n => { const shown = next(); renderer.ask({ set: { n } }); await shown; assert.equal(one.fail, undefined) }
+  one.rest = async () => { while (!seen.length || seen.at(-1).coarse) await next() }
+  // Moves a control through 40 steps. Returns the pictures shown.
+  one.drag = async () => {
+    seen.length = 0
+    for (let n = 0; n < 40; n++) await one.step(n)
+    return seen.splice(0)
+  }
+  return one
+}
+
+const sizes = pictures => [...new Set(pictures.map(one => `${one.width}x${one.height}`))]
+
+await test("a picture at rest has the screen's pixels and four samples", async () => {
+  for (const [density, width, height] of [[1, 640, 400], [1.5, 960, 600], [3, 1280, 800]]) {
+    const one = figure({ fixed: () => 4, sample: () => 1e-5, density })
+    await one.step(0)
+    await one.rest()
+    const { width: wide, height: high, samples, layers } = one.seen.at(-1)
+    assert.deepEqual([wide, high, samples, layers], [width, height, 4, { width: 640, height: 400, least: 12 }])
+  }
+  const own = figure({ fixed: () => 4, sample: () => 1e-5, samples: 16 })
+  await own.step(0)
+  await own.rest()
+  assert.equal(own.seen.at(-1).samples, 16)
+})
+
+await test("a fixed part does not shrink the picture", async () => {
+  const one = figure({ fixed: () => 24, sample: () => 1e-4 }) // 160,000 samples fit into 40 ms
+  await one.step(0)
+  await one.rest()
+  const pictures = await one.drag()
+  assert.deepEqual(sizes(pictures), ["506x316"]) // sqrt(160,000 / 256,000) of 640 x 400
+  await one.rest()
+})
+
+await test("a drag changes its size at most once, and answers in 50 ms", async () => {
+  let factor = 1
+  const one = figure({ fixed: () => 5 * factor, sample: () => 4e-4 * factor })
+  await one.step(0)
+  await one.rest()
+  for (factor of [0.3, 3, 1, 0.1]) { // the browser compiles; the machine is busy; ...
+    const pictures = await one.drag(), found = sizes(pictures)
+    assert(found.length <= 2, `factor ${factor}: ${found}`)
+    for (const { ms } of pictures.slice(5)) assert(ms <= 50, `factor ${factor}: ${ms} ms`)
+    const most = Math.min(256000, (40 - 5 * factor) / (4e-4 * factor)), last = pictures.at(-1)
+    assert(last.width * last.height > most / 1.7, `factor ${factor}: ${found}; ${most} pixels fit`)
+    await one.rest()
+  }
+})
+
+await test("a script that alone takes too long still has a picture", async () => {
+  const one = figure({ fixed: () => 200, sample: () => 2e-4 })
+  await one.step(0)
+  await one.rest()
+  for (const { width } of await one.drag()) assert(width > 300, `${width} pixels`)
+  await one.rest()
+})
+
+await test("a slow picture appears in smaller sizes first", async () => {
+  const one = figure({ fixed: () => 5, sample: () => 0.03 }) // 7.7 s
+  await one.step(0)
+  await one.rest()
+  assert.deepEqual(one.seen.map(({ width, samples }) => [width, samples]), [[160, 1], [320, 1], [640, 1], [640, 2], [640, 4]])
+})
+
+console.log(`${bad ? "not all" : "all"} is well`)
+process.exit(bad ? 1 : 0)
