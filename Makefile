@@ -244,7 +244,7 @@ $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$
 $(TABLE_OBJ): OWN = $(call without_kernels,$(LEFT_OUT))
 $(TABLE_OBJ): $(BUILD)/kernels $(BUILD)/effects
 # Some sources need flags of their own.
-UNROLLED := $(addprefix engine/,compare/flip.c render/frame/stats.c render/tile/batch.c $(addprefix render/effects/,adaptive/choose.c bounce/bounce.c \
+UNROLLED := $(addprefix engine/,compare/flip.c render/frame/stats.c render/paths/batch.c render/paths/event.c $(addprefix render/effects/,adaptive/choose.c bounce/bounce.c \
               derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
               indirect/begin.c indirect/indirect.c light_groups/light_groups.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
               transparent_shadow/transparent_shadow.c))

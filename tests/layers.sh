@@ -51,10 +51,11 @@ for files in "$render/plan/*.[ch]" "$render/effects/*/plan*.[ch]" $render/effect
 done
 layer $render/reuse "$effects/plan.h" $render/program $render/plan $film $stages $base
 layer $render/tile "$effects" $render/program $render/reuse $render/plan $film $stages $render/stages/light $base
+layer $render/paths "$effects" $render/program $render/tile $render/plan $film $stages $base
 layer $render/frame "$effects" $render/program $render/tile $render/reuse $render/plan $film $stages $base
 kernels=$(find $render/effects -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')
 includes "$render/stages/*.h $render/stages/*/*.[ch] $kernels" "$render/stages(/[a-z]*)?" "$effects/(contract|kernel_[a-z]*|ref|ref_[a-z]*).h" $film/codes.h $base
-includes "$(find $render/effects/*/ -name '*.[ch]' | grep -vxF "$kernels")" "$effects" $render/effects $render/frame $render/tile $render/program \
+includes "$(find $render/effects/*/ -name '*.[ch]' | grep -vxF "$kernels")" "$effects" $render/effects $render/frame $render/paths $render/tile $render/program \
     $render/reuse $render/plan $render/geometry $render/scene $film $stages $render/stages/light $base
 
 # ---- Around it ----

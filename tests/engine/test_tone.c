@@ -71,7 +71,7 @@ static float tone_value(const uint32_t *table)
 static const glint_tone_table *tone_of(int index)
 {
     glint_tone_desc desc = { (glint_tone_curve)(index / 4), index & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
-                             index & 2 ? GLINT_ROUNDING_TRUNCATE : GLINT_ROUNDING_NEAREST, 8, 0 };
+                             index & 2 ? GLINT_ROUNDING_TRUNCATE : GLINT_ROUNDING_NEAREST, 8, 0, false };
     const glint_tone_table *table = NULL;
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
     return table;

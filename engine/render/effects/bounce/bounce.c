@@ -10,8 +10,8 @@
 /// weight of all: no light is lost, and work no longer doubles. The random number is a hash of the ray's own bits, so
 /// that it is always the same.
 ///
-/// max_depth does not count translucent surfaces that a ray goes straight through. They are counted as the
-/// passes of the ray, at most GLINT_PASSES_MAX.
+/// max_depth does not count translucent surfaces that a ray goes straight through. They are counted
+/// apart, at most GLINT_STRAIGHT_MAX.
 ///
 /// A ray too weak to be seen is not followed. A sample loses at most GLINT_BOUNCE_LOSS of linear light in total, by
 /// the plan's bound of the light along any ray. That is 1/318 of the smallest step between two 8-bit sRGB values.
@@ -24,15 +24,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// One level, and GLINT_BRANCHES - 1 more for each surface that may send on several rays.
-#define LEVELS ((GLINT_BRANCHES - 1) * GLINT_BOUNCE_SPLITS + 1)
+/// One level, and GLINT_SPLITS - 1 more for each surface that may send on several rays.
+#define LEVELS ((GLINT_SPLITS - 1) * GLINT_BOUNCE_SPLITS + 1)
 
 struct glint_bounce {
     glint_batch batch;
     glint_rays buffers[LEVELS];
     glint_rays *levels[LEVELS]; ///< rays of each level; taking some swaps the buffers
     uint32_t counts[LEVELS];
-    glint_sent sent[GLINT_BRANCHES]; ///< the rays that a batch sends to its own level, and to the levels above
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
     glint_ray_slope *slopes; ///< slopes of the rays of all levels and of the batch's own rays; NULL until a frame has
         ///< derivatives
@@ -92,7 +91,7 @@ static uint32_t depth_at(const struct glint_bounce *bounce, const glint_tile *ti
 /// Returns the number of translucent surfaces that the ray to sample i went straight through.
 static uint32_t passes_at(const struct glint_bounce *bounce, const glint_tile *tile, uint32_t i)
 {
-    return tile == &bounce->batch.tile ? bounce->batch.rays->passes[bounce->batch.ray_of[i]] : 0;
+    return tile == &bounce->batch.tile ? bounce->batch.rays->straight_count[bounce->batch.ray_of[i]] : 0;
 }
 
 /// Returns whether the surface of sample i sends on a ray, and the chain has not reached its end.
@@ -100,7 +99,7 @@ static bool goes_on(const struct glint_bounce *bounce, const glint_tile *tile, c
 {
     const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
     return (glint_is_sharp(m) && depth_at(bounce, tile, i) < plan->desc.max_depth) ||
-           (m->clears && passes_at(bounce, tile, i) < GLINT_PASSES_MAX);
+           (m->clears && passes_at(bounce, tile, i) < GLINT_STRAIGHT_MAX);
 }
 
 /// Selects the hits of `tile` whose materials send rays on, and whose chain has not reached its end.
@@ -122,8 +121,8 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
 
 /// The rays that continue from a sample.
 typedef struct parting {
-    double weight[GLINT_BRANCHES][3];
-    glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
+    double weight[GLINT_SPLITS][3];
+    glint_ray_slope slopes[GLINT_SPLITS][GLINT_DERIVATIVES_MAX]; ///< in frames with derivatives
 } parting;
 
 static double total_weight(const double weight[3]) { return (weight[0] + weight[1]) + weight[2]; }
@@ -143,19 +142,20 @@ static bool matters(const glint_plan *plan, const double weight[3], double *budg
     return false;
 }
 
-/// Sends one of the rays of sample i to level `base`, which is empty, or to one above.
-static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t above, uint32_t i,
-                 const parting *rays_of, glint_branch branch)
+/// Sends one of the rays of sample i to a level.
+static void push(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t level, uint32_t i,
+                 const parting *rays_of, glint_event event)
 {
-    glint_sent *sent = &bounce->sent[above];
-    glint_rays *rays = bounce->levels[base + above];
-    const uint32_t n = sent->count++;
-    sent->sample[n] = (uint16_t)i;
-    sent->branch[n] = (uint8_t)branch;
+    const glint_plan *plan = frame->plan;
+    glint_rays *rays = bounce->levels[level];
+    const uint32_t n = bounce->counts[level]++;
+    if (n == 0)
+        glint_rays_clear(rays, GLINT_TILE_GROUPS);
+    glint_ray_continue(&bounce->batch, tile, frame, i, event, rays, n);
     for (int c = 0; c < 3; c++)
-        rays->weight[c][n] = rays_of->weight[branch][c];
+        rays->throughput[c][n] = rays_of->weight[event][c];
     if (plan->derivatives)
-        memcpy(rays->slopes + n * plan->derivatives->count, rays_of->slopes[branch],
+        memcpy(rays->slopes + n * plan->derivatives->count, rays_of->slopes[event],
                plan->derivatives->count * sizeof *rays->slopes);
 }
 
@@ -179,7 +179,7 @@ static double lot_of(const glint_batch *batch, glint_precision precision, uint32
 static void take_weight(const glint_plan *plan, parting *rays, int one, int other)
 {
     for (int c = 0; c < 3; c++) {
-        rays->weight[one][c] = glint_weight(rays->weight[one][c] + rays->weight[other][c]);
+        rays->weight[one][c] = glint_clamp_throughput(rays->weight[one][c] + rays->weight[other][c]);
         rays->weight[other][c] = 0;
         for (size_t k = 0; plan->derivatives && k < plan->derivatives->count; k++)
             rays->slopes[one][k].weight[c] += rays->slopes[other][k].weight[c];
@@ -193,27 +193,28 @@ static void draw(const glint_plan *plan, parting *rays, double lot)
                  straight = total_weight(rays->weight[2]), at = lot * (mirrored + refracted + straight);
     const bool mirror = at < mirrored || !(refracted + straight > 0);
     const bool refraction = refracted > 0 && (at < mirrored + refracted || !(straight > 0));
-    const int drawn = mirror ? GLINT_BRANCH_MIRRORED : refraction ? GLINT_BRANCH_REFRACTED : GLINT_BRANCH_STRAIGHT;
-    for (int branch = 0; branch < GLINT_BRANCHES; branch++)
-        if (branch != drawn)
-            take_weight(plan, rays, drawn, branch);
+    const int drawn = mirror ? GLINT_EVENT_MIRROR : refraction ? GLINT_EVENT_REFRACT : GLINT_EVENT_STRAIGHT;
+    for (int event = 0; event < GLINT_SPLITS; event++)
+        if (event != drawn)
+            take_weight(plan, rays, drawn, event);
 }
 
 /// Sends on the rays of a sample that matter, the strongest to level `base`, the others to the levels above.
-static void push_all(struct glint_bounce *bounce, const glint_plan *plan, uint32_t base, uint32_t i, const parting *rays,
-                     double *budget)
+static void push_all(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t base, uint32_t i,
+                     const parting *rays, double *budget)
 {
-    const int branch_count = plan->clears ? GLINT_BRANCHES : GLINT_BRANCH_STRAIGHT;
-    double total[GLINT_BRANCHES];
-    for (int branch = 0; branch < branch_count; branch++)
-        total[branch] = matters(plan, rays->weight[branch], budget) ? total_weight(rays->weight[branch]) : 0;
-    for (int branch = 0; branch < branch_count; branch++) {
+    const glint_plan *plan = frame->plan;
+    const int event_count = plan->clears ? GLINT_SPLITS : GLINT_EVENT_STRAIGHT;
+    double total[GLINT_SPLITS];
+    for (int event = 0; event < event_count; event++)
+        total[event] = matters(plan, rays->weight[event], budget) ? total_weight(rays->weight[event]) : 0;
+    for (int event = 0; event < event_count; event++) {
         uint32_t stronger = 0;
-        if (!(total[branch] > 0))
+        if (!(total[event] > 0))
             continue;
-        for (int other = 0; other < branch_count; other++)
-            stronger += total[other] > total[branch] || (other < branch && total[other] == total[branch]);
-        push(bounce, plan, base, stronger, i, rays, (glint_branch)branch);
+        for (int other = 0; other < event_count; other++)
+            stronger += total[other] > total[event] || (other < event && total[other] == total[event]);
+        push(bounce, tile, frame, base + stronger, i, rays, (glint_event)event);
     }
 }
 
@@ -228,35 +229,32 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
                    surfaces = depth + passes_at(bounce, tile, i) + 1;
     parting rays;
     for (int c = 0; c < 3; c++)
-        for (int branch = 0; branch < GLINT_BRANCHES; branch++)
-            rays.weight[branch][c] = first ? 1 : batch->rays->weight[c][ray];
-    glint_batch_weigh(batch, tile, frame, i, rays.weight);
+        for (int event = 0; event < GLINT_SPLITS; event++)
+            rays.weight[event][c] = first ? 1 : batch->rays->throughput[c][ray];
+    glint_bsdf_weights(batch, tile, frame, i, rays.weight);
     if (plan->derivatives)
         glint_derive_split(batch, tile, frame, i, rays.slopes);
     // only the straight ray is left, or effects/rough follows the others
     if (!(depth < plan->desc.max_depth) || plan->bouncing[tile->surface.material[i]].rough)
-        memset(rays.weight, 0, GLINT_BRANCH_STRAIGHT * sizeof *rays.weight);
+        memset(rays.weight, 0, GLINT_EVENT_STRAIGHT * sizeof *rays.weight);
     if (!first && glint_has_lane(batch->total, i)) // the mirrored and the totally reflected ray have the same direction
-        take_weight(plan, &rays, GLINT_BRANCH_MIRRORED, GLINT_BRANCH_REFRACTED);
+        take_weight(plan, &rays, GLINT_EVENT_MIRROR, GLINT_EVENT_REFRACT);
     if (!first && surfaces > GLINT_BOUNCE_SPLITS)
         draw(plan, &rays, lot_of(batch, plan->desc.precision, i, surfaces));
-    push_all(bounce, plan, base, i, &rays, &bounce->budget[first ? i : batch->rays->pixel[ray]]);
+    push_all(bounce, tile, frame, base, i, &rays, &bounce->budget[first ? i : batch->rays->pixel[ray]]);
 }
 
-static void begin_sending(struct glint_bounce *bounce)
+/// Empties level `base` and those above that rays may be sent to.
+static void begin_sending(struct glint_bounce *bounce, uint32_t base)
 {
-    for (int above = 0; above < GLINT_BRANCHES; above++)
-        bounce->sent[above].count = 0;
+    for (uint32_t level = base; level < base + GLINT_SPLITS && level < LEVELS; level++)
+        bounce->counts[level] = 0;
 }
 
-static void end_sending(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame,
-                        uint32_t base)
+static void end_sending(struct glint_bounce *bounce, uint32_t base)
 {
-    for (uint32_t above = 0; above < GLINT_BRANCHES && base + above < LEVELS; above++) {
-        bounce->counts[base + above] = bounce->sent[above].count;
-        if (bounce->sent[above].count)
-            glint_batch_send(&bounce->batch, tile, frame, &bounce->sent[above], bounce->levels[base + above]);
-    }
+    for (uint32_t level = base; level < base + GLINT_SPLITS && level < LEVELS; level++)
+        bounce->levels[level]->group_count = (bounce->counts[level] + GLINT_GROUP - 1) / GLINT_GROUP;
 }
 
 /// Sends on rays from the hits of the eye's samples, to level 0.
@@ -264,12 +262,12 @@ static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, con
 {
     if (!choose(bounce, tile, frame))
         return;
-    glint_batch_find_directions(&bounce->batch, tile, frame);
-    begin_sending(bounce);
+    glint_event_find_directions(&bounce->batch, tile, frame);
+    begin_sending(bounce, 0);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned bits = bounce->batch.wanted[g]; bits; bits &= bits - 1)
             send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), 0);
-    end_sending(bounce, tile, frame, 0);
+    end_sending(bounce, 0);
 }
 
 /// Sends on rays from the hits of the batch, in the order of its rays; `level` is the level of these rays, which is
@@ -279,15 +277,15 @@ static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, ui
     const glint_batch *batch = &bounce->batch;
     if (!choose(bounce, &batch->tile, frame))
         return;
-    glint_batch_find_directions(&bounce->batch, &batch->tile, frame);
-    begin_sending(bounce);
+    glint_event_find_directions(&bounce->batch, &batch->tile, frame);
+    begin_sending(bounce, level);
     for (uint32_t g = 0; g < batch->rays->group_count; g++)
         for (unsigned bits = batch->rays->active[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             if (glint_batch_has_sample(batch, i) && glint_has_lane(batch->wanted, batch->sample[i]))
                 send_on(bounce, &batch->tile, frame, batch->sample[i], level);
         }
-    end_sending(bounce, &batch->tile, frame, level);
+    end_sending(bounce, level);
 }
 
 // ---- A batch ----
@@ -317,12 +315,12 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
             const uint32_t pixel = rays->pixel[i];
             double weight[3];
             if (covers && glint_batch_uncovers(batch, plan, i)) {
-                to->film.covered[pixel] -= ((rays->weight[0][i] + rays->weight[1][i]) + rays->weight[2][i]) / 3;
+                to->film.covered[pixel] -= ((rays->throughput[0][i] + rays->throughput[1][i]) + rays->throughput[2][i]) / 3;
                 if (plan->desc.alpha)
                     continue;
             }
             for (int c = 0; c < 3; c++) {
-                weight[c] = rays->weight[c][i];
+                weight[c] = rays->throughput[c][i];
                 sum[c][pixel] += weight[c] * glint_batch_light_of(batch, plan, c, i);
             }
             if (plan->light_groups && glint_batch_has_sample(batch, i))
@@ -335,7 +333,7 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
     take_level(bounce, level, &to->counts);
     const bool any = glint_batch_cast(&bounce->batch, frame);
     if (any || bounce->batch.whole)
-        glint_batch_light(&bounce->batch, frame, any);
+        glint_batch_light(&bounce->batch, frame, frame, any);
     collect(&bounce->batch, frame->plan, to);
     glint_tile_step(to, frame, GLINT_AT_SENT, &(glint_sample_walk) { .any = any, .batch = &bounce->batch });
     if (any)
@@ -352,13 +350,13 @@ static void follow(glint_tile *tile, const glint_tile_frame *frame)
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
     spawn_first(bounce, tile, frame);
-    for (uint32_t level = GLINT_BRANCHES - 1;;) { // the highest level that may have rays
+    for (uint32_t level = GLINT_SPLITS - 1;;) { // the highest level that may have rays
         while (level > 0 && bounce->counts[level] == 0)
             level--;
         if (bounce->counts[level] == 0 || glint_tile_cancelled(frame))
             break;
         run_batch(bounce, tile, frame, level);
-        level = level + GLINT_BRANCHES - 1 < LEVELS ? level + GLINT_BRANCHES - 1 : LEVELS - 1;
+        level = level + GLINT_SPLITS - 1 < LEVELS ? level + GLINT_SPLITS - 1 : LEVELS - 1;
     }
     glint_batch_end(&bounce->batch, tile);
 }

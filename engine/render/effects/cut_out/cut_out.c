@@ -10,7 +10,7 @@
 #include "engine/base/vec.h"
 #include "engine/render/effects/pattern/work.h"
 #include "engine/render/program/program.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/batch.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -38,14 +38,14 @@ static turning find_turning(const glint_batch *batch, const glint_tile *tile, co
     uint32_t sides[2];
     if (d->bends)
         glint_bend_sample(tile, frame, index, i, &points, &bend);
-    glint_batch_sides(batch, tile, frame, i, sides);
+    glint_event_sides(batch, tile, frame, i, sides);
     t.ratio = dual_div(index_of(plan, d, sides[0]), index_of(plan, d, sides[1]));
     for (int c = 0; c < 3; c++) {
         t.direction[c] = dual(-points.eye[c][i % GLINT_GROUP], -bend.eye[c]);
         t.normal[c] = dual(points.normal[c][i % GLINT_GROUP], bend.normal[c]);
         t.cosine = dual_sub(t.cosine, dual_mul(t.direction[c], t.normal[c]));
         t.point[c] = bend.point[c];
-        t.throughput[c] = later ? dual(batch->rays->weight[c][ray],
+        t.throughput[c] = later ? dual(batch->rays->throughput[c][ray],
                                        batch->rays->slopes[ray * plan->derivatives->count + index].weight[c])
                                 : dual(1, 0);
     }
@@ -89,9 +89,9 @@ static glint_dual share_of(const glint_tile *tile, const glint_plan *plan, size_
     return dual(value, program ? glint_derivative_painted(tile, plan, index, field, c)[i] : slope);
 }
 
-/// Like glint_batch_split, for one derivative.
+/// Like glint_bsdf_weights, for one derivative.
 static void split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
-                  glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX])
+                  glint_ray_slope slopes[GLINT_SPLITS][GLINT_DERIVATIVES_MAX])
 {
     const uint32_t material = tile->surface.material[i];
     glint_bounce_material buffer;
@@ -109,18 +109,18 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
     for (int c = 0; c < 3; c++) {
         mirrored[c] = share_of(tile, frame->plan, index, i, GLINT_FIELD_MIRROR, c, m->mirror[c], slope->mirror[c]);
         sent[c] = share_of(tile, frame->plan, index, i, GLINT_FIELD_TRANSMISSION, c, m->transmission[c], slope->transmission[c]);
-        if (total) // see total_share of tile/batch.c
+        if (total) // see total_share of paths/event.c
             sent[c] = m->transmits && mirrored[c].value < opacity.value ? dual_sub(opacity, mirrored[c]) : dual(0, 0);
     }
     const glint_dual part = m->fresnel ? reflectance : one, rest = m->fresnel ? dual_sub(one, reflectance) : one;
     const glint_dual bend = total ? twice : dual_sub(dual_mul(t.ratio, t.cosine), beyond);
-    slopes[GLINT_BRANCH_MIRRORED][index] = slope_of(&t, one, twice, mirrored, part);
-    slopes[GLINT_BRANCH_REFRACTED][index] = slope_of(&t, total ? one : t.ratio, bend, sent, rest);
-    slopes[GLINT_BRANCH_STRAIGHT][index] = slope_of(&t, one, dual(0, 0), straight, one);
+    slopes[GLINT_EVENT_MIRROR][index] = slope_of(&t, one, twice, mirrored, part);
+    slopes[GLINT_EVENT_REFRACT][index] = slope_of(&t, total ? one : t.ratio, bend, sent, rest);
+    slopes[GLINT_EVENT_STRAIGHT][index] = slope_of(&t, one, dual(0, 0), straight, one);
 }
 
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX])
+                        glint_ray_slope slopes[GLINT_SPLITS][GLINT_DERIVATIVES_MAX])
 {
     for (size_t k = 0; k < frame->plan->derivatives->count; k++)
         split(batch, tile, frame, k, i, slopes);
@@ -153,7 +153,7 @@ void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *f
                     longer -= (bend.point[c] - slope->origin[c]) * points.eye[c][i % GLINT_GROUP];
             for (int c = 0; c < 3; c++) {
                 const double a = plan->bouncing[medium].absorption[c], more = d->bounces[medium].absorption[c];
-                const double weight = rays->weight[c][ray],
+                const double weight = rays->throughput[c][ray],
                              off = distance < HUGE_VAL ? a * longer + more * distance : 0;
                 slope->weight[c] = slope->weight[c] * glint_plan_transmittance(a, distance) - weight * off;
             }
@@ -186,7 +186,7 @@ void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glin
             const bool own = sampled && glint_derivatives_weigh(all) && glint_has_lane(batch->tile.at.hits, i);
             const bool seen = !plan->desc.alpha || !glint_batch_uncovers(batch, plan, ray);
             for (int c = 0; c < 3 && seen; c++) {
-                const double weight = rays->weight[c][ray];
+                const double weight = rays->throughput[c][ray];
                 const double light = own ? work->light[c][i] : glint_batch_light_of(batch, plan, c, ray);
                 if (glint_derivatives_read_light(to, plan))
                     glint_derivative_of(to)->light[c][pixel] += weight * light;

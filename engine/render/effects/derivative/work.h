@@ -3,7 +3,7 @@
 #define GLINT_DERIVATIVE_WORK_H
 
 #include "engine/render/effects/derivative/plan.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/event.h"
 
 #define GLINT_SHADOW_MIXER 0x9e3779b1u
 
@@ -105,9 +105,9 @@ void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *fr
 /// Returns the slopes of a field by derivative number `index`; NULL: no program computes the field, or none changes.
 const double *glint_derivative_painted(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int channel);
 
-/// bounce.c: with glint_batch_split, computes the slopes of the rays for all derivatives.
+/// bounce.c: with glint_bsdf_weights, computes the slopes of the rays for all derivatives.
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                        glint_ray_slope slopes[GLINT_BRANCHES][GLINT_DERIVATIVES_MAX]);
+                        glint_ray_slope slopes[GLINT_SPLITS][GLINT_DERIVATIVES_MAX]);
 /// After glint_batch_light: computes the slopes of the rays' weights by absorption.
 void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *frame);
 /// Adds the slopes of the rays' light to those of their pixels.

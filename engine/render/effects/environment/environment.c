@@ -8,7 +8,7 @@
 #include "engine/render/effects/environment/plan.h"
 #include "engine/render/effects/pattern/inputs.h"
 #include "engine/render/program/program.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/batch.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -14,21 +14,22 @@ static uint32_t lane_order(uint32_t lane)
 }
 
 /// Finds the block of point i of `seen`; `block`: the previous one.
-static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
-                       const glint_ray *ray, uint32_t i, glint_pixel_block *block)
+static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan, uint32_t i,
+                       glint_pixel_block *block)
 {
-    const uint32_t group = ray->pixel / GLINT_GROUP;
+    const glint_rays *first = &indirect->first;
+    const uint32_t group = first->pixel[i] / GLINT_GROUP;
     const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
     const uint64_t at = x | (uint64_t)y << 32,
-                   depth_code = indirect->salt + (ray->term == GLINT_TERM_INDIRECT
+                   depth_code = indirect->salt + (first->term[i] == GLINT_TERM_INDIRECT
                                     ? 0
-                                    : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR));
+                                    : 1 + 2 * (uint64_t)first->depth[i] + (first->term[i] == GLINT_TERM_MIRROR));
     if (!block->known || block->at != at || block->depth_code != depth_code) {
         const uint64_t number = glint_sequence_mix(glint_sequence_mix(at, (uint64_t)plan->desc.seed), depth_code);
         *block = (glint_pixel_block) { .known = true, .at = at, .depth_code = depth_code, .number = number };
     }
     indirect->block[i] = block->number;
-    indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
+    indirect->lane[i] = lane_order(first->pixel[i] % GLINT_GROUP);
 }
 
 /// Returns the factor of the light of paths at sample i of a tile: the diffuse reflectance; with ambient occlusion
@@ -47,23 +48,23 @@ uint32_t glint_indirect_paths_of(const glint_plan *plan, const glint_batch *from
     const double samples = plan->indirect.samples;
     double weight = 0;
     for (int c = 0; from && c < 3; c++)
-        weight = glint_larger(weight, from->rays->weight[c][from->ray_of[i]]);
+        weight = glint_larger(weight, from->rays->throughput[c][from->ray_of[i]]);
     return from ? (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples) : (uint32_t)plan->indirect.samples;
 }
 
 void glint_indirect_begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan, uint32_t i,
-                                uint32_t paths, const double *factor, glint_ray *ray, glint_pixel_block *block)
+                                uint32_t paths, const double *factor, glint_pixel_block *block)
 {
-    const double part = 1.0 / paths;
-    ray->point = i;
-    ray->least = glint_largest(ray->weight) * part * plan->indirect.least;
+    glint_rays *first = &indirect->first;
+    const double part = 1.0 / paths, arriving[3] = { first->throughput[0][i], first->throughput[1][i], first->throughput[2][i] };
+    first->point[i] = i;
+    first->min_throughput[i] = glint_largest(arriving) * part * plan->indirect.least;
     for (int c = 0; c < 3; c++) {
-        ray->direction[c] = 0;
-        ray->weight[c] = indirect->weight[c][i] = glint_weight(ray->weight[c] * (factor[c] * part));
+        glint_real_put(first->direction[c], plan->desc.precision, i, 0);
+        first->throughput[c][i] = indirect->weight[c][i] = glint_clamp_throughput(arriving[c] * (factor[c] * part));
     }
-    glint_rays_put(&indirect->first, plan, i, ray);
     indirect->paths[i] = paths;
-    find_block(indirect, to, plan, ray, i, block);
+    find_block(indirect, to, plan, i, block);
     indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
 }
 
@@ -73,13 +74,13 @@ static uint32_t scatter_point(struct glint_indirect *indirect, const glint_tile 
                               glint_pixel_block *block)
 {
     const uint32_t paths = glint_indirect_paths_of(frame->plan, from, i);
-    glint_ray ray;
-    glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i, &ray);
+    glint_rays *first = &indirect->first;
+    glint_ray_begin(from ? from : &indirect->batch, seen, frame, i, first, i);
     if (!from)
-        ray.term = GLINT_TERM_INDIRECT;
-    ray.inward = glint_has_lane(seen->hit.back, i);
-    ray.scatters++;
-    glint_indirect_begin_point(indirect, to, frame->plan, i, paths, factor, &ray, block);
+        first->term[i] = GLINT_TERM_INDIRECT;
+    glint_rays_mark(first->inward, i, glint_has_lane(seen->hit.back, i));
+    first->scatters[i]++;
+    glint_indirect_begin_point(indirect, to, frame->plan, i, paths, factor, block);
     return paths;
 }
 
@@ -128,7 +129,7 @@ static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame 
 {
     glint_rays *first = &indirect->first;
     if (frame->plan->absorbs || glint_plan_bumps(frame->plan) || frame->plan->sky)
-        memcpy(first->weight, indirect->weight, sizeof first->weight);
+        memcpy(first->throughput, indirect->weight, sizeof first->throughput);
     if (frame->plan->sky)
         glint_indirect_weigh_sky(first, first->active, indirect->share);
     if (!glint_plan_bumps(frame->plan))
@@ -137,7 +138,7 @@ static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame 
         if (glint_has_lane(first->active, i) &&
             !glint_indirect_leaves(seen, frame->plan, i, (const double(*)[GLINT_TILE_SAMPLES])first->direction))
             for (int c = 0; c < 3; c++)
-                first->weight[c][i] = 0;
+                first->throughput[c][i] = 0;
 }
 
 /// Selects the points that have a path number `path`. Returns whether there are any.

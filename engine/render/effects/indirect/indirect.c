@@ -25,10 +25,7 @@
 
 #define GOLDEN 0x1.9e3779b97f4a8p-1 ///< golden ratio: fractional parts of its multiples fill 0 .. 1 evenly
 
-typedef enum event { EVENT_NONE, EVENT_SCATTERED, EVENT_MIRRORED, EVENT_REFRACTED, EVENT_STRAIGHT, EVENT_COUNT } event;
-
 #define PI 0x1.921fb54442d18p+1
-#define CHOICES (EVENT_COUNT - EVENT_SCATTERED)
 #define LEAST_SHARE 0.05 ///< assumed of a surface that reflects less head-on, because it reflects more at grazing angles
 
 struct glint_indirect *glint_indirect_create(const glint_plan *plan)
@@ -97,7 +94,7 @@ static bool goes_on(const glint_batch *batch, const glint_plan *plan, uint32_t i
     const uint32_t material = batch->tile.surface.material[i];
     const glint_bounce_material *m = &plan->bouncing[material];
     return ((m->mirrors || m->transmits) && may_reflect(batch, plan, i) && !glint_is_plain(plan, material)) ||
-           (m->clears && batch->rays->passes[batch->ray_of[i]] < GLINT_PASSES_MAX);
+           (m->clears && batch->rays->straight_count[batch->ray_of[i]] < GLINT_STRAIGHT_MAX);
 }
 
 void glint_indirect_find_directions(struct glint_indirect *indirect, const glint_tile_frame *frame)
@@ -115,34 +112,35 @@ void glint_indirect_find_directions(struct glint_indirect *indirect, const glint
         any |= batch->wanted[g];
     }
     if (any)
-        glint_batch_find_directions(batch, &batch->tile, frame);
+        glint_event_find_directions(batch, &batch->tile, frame);
 }
 
 /// Returns which seed draws the direction of a path that ray `ray` continues without a change of its counters.
 static uint32_t next_seed(const glint_rays *rays, uint32_t ray)
 {
-    return 2 * (rays->scatters[ray] + rays->depth[ray] + rays->passes[ray]);
+    return 2 * (rays->scatters[ray] + rays->depth[ray] + rays->straight_count[ray]);
 }
 
-/// Draws the continuation of a path, with a probability proportional to the shares of its light.
-static int choose_branch(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
-                         const double share[CHOICES], double all)
+/// Draws the event that continues a path, with a probability proportional to its share of the light.
+static glint_event sample_event(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
+                                const double share[GLINT_EVENTS], double all)
 {
-    int likely = 0, last = CHOICES - 1;
+    static const glint_event order[] = { GLINT_EVENT_SCATTER, GLINT_EVENT_MIRROR, GLINT_EVENT_REFRACT, GLINT_EVENT_STRAIGHT };
+    int likely = 0, last = GLINT_EVENTS - 1;
     double number_of[2], sum = 0;
-    while (likely < last && !(share[likely] > 0))
+    while (likely < last && !(share[order[likely]] > 0))
         likely++;
-    if (!(share[likely] < all))
-        return likely;
+    if (!(share[order[likely]] < all))
+        return order[likely];
     glint_indirect_draw(indirect, rays->point[ray], number, next_seed(rays, ray) + 1, number_of);
-    while (last > 0 && !(share[last] > 0))
+    while (last > 0 && !(share[order[last]] > 0))
         last--;
     for (int k = 0; k < last; k++) {
-        sum += share[k];
+        sum += share[order[k]];
         if (number_of[0] * all < sum)
-            return k;
+            return order[k];
     }
-    return last;
+    return order[last];
 }
 
 static bool is_rough(const glint_batch *batch, const glint_plan *plan, uint32_t i)
@@ -157,66 +155,76 @@ static void spread_shares(const struct glint_indirect *indirect, const glint_til
     const glint_batch *batch = &indirect->batch;
     const uint32_t ray = batch->ray_of[i];
     double square[2], disk[2];
-    const double weight[3] = { batch->rays->weight[0][ray], batch->rays->weight[1][ray], batch->rays->weight[2][ray] };
+    const double weight[3] = { batch->rays->throughput[0][ray], batch->rays->throughput[1][ray], batch->rays->throughput[2][ray] };
     glint_bounce_material buffer;
     if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
         const glint_bounce_material *m = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer);
         for (int c = 0; c < 3 && m->mirrors; c++)
-            share[0] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? glint_larger(m->f0[c], LEAST_SHARE) : 1));
+            share[GLINT_EVENT_MIRROR] += weight[c] * (m->mirror[c] * m->specular[c] * (m->schlick ? glint_larger(m->f0[c], LEAST_SHARE) : 1));
         return;
     }
     glint_indirect_draw(indirect, batch->rays->point[ray], number, next_seed(batch->rays, ray), square);
     disk[0] = sqrt(square[0]) * glint_cos(2 * PI * square[1]);
     disk[1] = sqrt(square[0]) * glint_sin(2 * PI * square[1]);
     glint_rough_shares(batch, &batch->tile, frame, i, disk, share);
-    share[0] *= mean(weight);
-    share[1] *= mean(weight);
+    share[GLINT_EVENT_MIRROR] *= mean(weight);
+    share[GLINT_EVENT_REFRACT] *= mean(weight);
 }
 
-/// Chooses the continuation of the path of sample i, and starts the ray unless it is scattered. rough: whether the
-/// surface is.
-static event choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
-                    bool rough, glint_ray *next)
+/// Returns whether an event at a surface spreads rays by its facets.
+static bool spreads(bool rough, glint_event event)
+{
+    return rough && (event == GLINT_EVENT_MIRROR || event == GLINT_EVENT_REFRACT);
+}
+
+/// Chooses how the path of sample i continues, and starts its ray; the direction of a ray that is scattered or spread
+/// follows. rough: whether the surface is.
+static glint_event choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
+                          bool rough, glint_rays *next)
 {
     glint_batch *batch = &indirect->batch;
     const glint_rays *rays = batch->rays;
     const uint32_t ray = batch->ray_of[i];
-    double share[CHOICES] = { 0 }, least = 0, buffer[3];
+    double share[GLINT_EVENTS] = { 0 }, throughput[GLINT_EVENTS][3], least = 0, buffer[3];
     const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, buffer);
-    glint_ray split[GLINT_BRANCHES];
+    for (int event = 0; event < GLINT_EVENTS; event++)
+        for (int c = 0; c < 3; c++)
+            throughput[event][c] = rays->throughput[c][ray];
     if (rays->scatters[ray] < frame->plan->indirect.bounces)
         for (int c = 0; c < 3; c++)
-            share[0] += diffuse[c] * rays->weight[c][ray];
+            share[GLINT_EVENT_SCATTER] += diffuse[c] * rays->throughput[c][ray];
     if (glint_has_lane(batch->wanted, i)) {
         const bool ends = !may_reflect(batch, frame->plan, i); // only scattered or straight rays are left
-        glint_batch_split(batch, &batch->tile, frame, i, split);
-        share[1] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_MIRRORED].weight);
-        share[2] = ends ? 0 : 3 * mean(split[GLINT_BRANCH_REFRACTED].weight);
-        share[3] = frame->plan->clears ? 3 * mean(split[GLINT_BRANCH_STRAIGHT].weight) : 0;
+        glint_bsdf_weights(batch, &batch->tile, frame, i, throughput);
+        for (int event = 0; event < GLINT_SPLITS; event++)
+            share[event] = ends && event != GLINT_EVENT_STRAIGHT ? 0 : 3 * mean(throughput[event]);
     }
     if (rough) {
-        share[1] = share[2] = 0;
+        share[GLINT_EVENT_MIRROR] = share[GLINT_EVENT_REFRACT] = 0;
         if (may_reflect(batch, frame->plan, i))
-            spread_shares(indirect, frame, number, i, share + 1);
+            spread_shares(indirect, frame, number, i, share);
     }
-    const double all = ((share[0] + share[1]) + share[2]) + share[3];
+    const double all = ((share[GLINT_EVENT_SCATTER] + share[GLINT_EVENT_MIRROR]) + share[GLINT_EVENT_REFRACT]) + share[GLINT_EVENT_STRAIGHT];
     if (!(all > 0))
-        return EVENT_NONE;
-    const int chosen = choose_branch(indirect, number, rays, ray, share, all);
-    const double chance = share[chosen] / all;
-    const event what = (event)(EVENT_SCATTERED + chosen);
-    const bool spreads = rough && (what == EVENT_MIRRORED || what == EVENT_REFRACTED);
-    if (chosen && !spreads)
-        *next = split[chosen - 1];
-    else
-        glint_batch_start_ray(batch, &batch->tile, frame, i, next);
-    if (what == EVENT_MIRRORED || what == EVENT_REFRACTED)
-        next->blind = next->scatters > 0;
+        return GLINT_EVENT_NONE;
+    const glint_event event = sample_event(indirect, number, rays, ray, share, all);
+    const double pdf = share[event] / all;
+    const bool by_facets = spreads(rough, event);
     for (int c = 0; c < 3; c++) {
-        next->weight[c] = glint_weight(next->weight[c] / chance);
-        least = glint_larger(least, spreads ? all / 3 : next->weight[c] * (chosen ? 1 : diffuse[c]));
+        throughput[event][c] = glint_clamp_throughput((by_facets ? rays->throughput[c][ray] : throughput[event][c]) / pdf);
+        least = glint_larger(least, by_facets ? all / 3 : throughput[event][c] * (event == GLINT_EVENT_SCATTER ? diffuse[c] : 1));
     }
-    return least <= rays->least[ray] ? EVENT_NONE : what;
+    if (least <= rays->min_throughput[ray])
+        return GLINT_EVENT_NONE;
+    if (event == GLINT_EVENT_SCATTER || by_facets)
+        glint_ray_begin(batch, &batch->tile, frame, i, next, i);
+    else
+        glint_ray_continue(batch, &batch->tile, frame, i, event, next, i);
+    for (int c = 0; c < 3; c++)
+        next->throughput[c][i] = throughput[event][c];
+    if (event == GLINT_EVENT_MIRROR || event == GLINT_EVENT_REFRACT)
+        glint_rays_mark(next->skip_emitters, i, next->scatters[i] > 0);
+    return event;
 }
 
 /// Starts the reflected rays of the paths at plain rough surfaces, the lanes in `plain`.
@@ -240,11 +248,11 @@ static void spread_plain(struct glint_indirect *indirect, const glint_tile_frame
             continue;
         const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
         next->depth[i]++;
-        next->blind[i / GLINT_GROUP] |= (uint16_t)((unsigned)m->facets << i % GLINT_GROUP);
+        next->skip_emitters[i / GLINT_GROUP] |= (uint16_t)((unsigned)m->facets << i % GLINT_GROUP);
         for (int c = 0; c < 3; c++) {
             const double share = m->mirror[c] * m->specular[c] * glint_schlick(m, c, indirect->grazing[i]);
             glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
-            next->weight[c][i] = glint_weight(next->weight[c][i] * (share * indirect->unmasked[i]));
+            next->throughput[c][i] = glint_clamp_throughput(next->throughput[c][i] * (share * indirect->unmasked[i]));
         }
     }
 }
@@ -258,10 +266,10 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
     const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, buffer);
     const bool free = glint_indirect_leaves(tile, frame->plan, i, indirect->direction);
     next->scatters[i]++;
-    next->blind[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+    glint_rays_mark(next->skip_emitters, i, true);
     for (int c = 0; c < 3; c++) {
         glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
-        next->weight[c][i] = glint_weight(next->weight[c][i] * (diffuse[c] * (free ? 1 : 0)));
+        next->throughput[c][i] = glint_clamp_throughput(next->throughput[c][i] * (diffuse[c] * (free ? 1 : 0)));
     }
 }
 
@@ -283,11 +291,10 @@ static void scatter(struct glint_indirect *indirect, const glint_tile_frame *fra
 }
 
 /// Notes the point of the sequence for the next direction of a path.
-static void draw_next(struct glint_indirect *indirect, const glint_ray *next, uint64_t number, uint32_t i)
+static void draw_next(struct glint_indirect *indirect, const glint_rays *next, uint64_t number, uint32_t i)
 {
-    const uint64_t k = glint_indirect_point_of(indirect, next->point, number);
-    const glint_sequence_seed seed = glint_sequence_seed_of(
-        glint_indirect_seed_of(indirect, next->point, k, 2 * (next->scatters + next->depth + next->passes)));
+    const uint64_t k = glint_indirect_point_of(indirect, next->point[i], number);
+    const glint_sequence_seed seed = glint_sequence_seed_of(glint_indirect_seed_of(indirect, next->point[i], k, next_seed(next, i)));
     glint_indirect_note(&indirect->next_draws, i, k, &seed, 0);
 }
 
@@ -304,24 +311,19 @@ static void spread(struct glint_indirect *indirect, const glint_tile_frame *fram
         for (unsigned bits = indirect->spread[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             double disk[2], cube[3], lot[2];
-            glint_ray ray;
             if (glint_is_plain(frame->plan, batch->tile.surface.material[i])) {
                 const double alpha = glint_tile_bouncing(&batch->tile, frame->plan, i, &buffer)->alpha;
                 glint_real_put(indirect->alpha, frame->plan->desc.precision, i, alpha);
                 plain[g] |= (uint16_t)(bits & -bits);
                 continue;
             }
-            glint_batch_start_ray(batch, &batch->tile, frame, i, &ray);
-            for (int c = 0; c < 3; c++)
-                ray.weight[c] = next->weight[c][i];
             for (int c = 0; c < 2; c++)
                 disk[c] = glint_real_at(indirect->direction[c], frame->plan->desc.precision, i);
             glint_indirect_square(&indirect->next_draws, i, 0, cube);
-            if (frame->plan->sky) // choose_branch takes the first of them
-                glint_indirect_draw(indirect, ray.point, number, next_seed(batch->rays, batch->ray_of[i]) + 1, lot);
+            if (frame->plan->sky) // sample_event takes the first of them
+                glint_indirect_draw(indirect, next->point[i], number, next_seed(batch->rays, batch->ray_of[i]) + 1, lot);
             cube[2] = frame->plan->sky ? lot[1] : 0;
-            glint_rough_leave(batch, &batch->tile, frame, i, disk, cube, (glint_branch)indirect->branch[i], &ray);
-            glint_rays_put(next, frame->plan, i, &ray);
+            glint_rough_leave(batch, &batch->tile, frame, i, disk, cube, (glint_event)indirect->event[i], next, i);
         }
     spread_plain(indirect, frame, plain, next);
 }
@@ -351,18 +353,13 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
             const bool rough = is_rough(batch, frame->plan, i);
             if (ends(batch, frame->plan, i, rough))
                 continue;
-            glint_ray next;
-            const event chosen = choose(indirect, frame, number, i, rough, &next);
-            if (chosen == EVENT_NONE)
+            const glint_event event = choose(indirect, frame, number, i, rough, rays);
+            if (event == GLINT_EVENT_NONE || (event != GLINT_EVENT_SCATTER && !spreads(rough, event)))
                 continue;
-            const bool spreads = rough && (chosen == EVENT_MIRRORED || chosen == EVENT_REFRACTED);
-            if (chosen == EVENT_SCATTERED || spreads) {
-                draw_next(indirect, &next, number, i);
-                (spreads ? indirect->spread : indirect->scattered)[g] |= (uint16_t)(bits & -bits);
-                next.inward = glint_has_lane(tile->hit.back, i);
-                indirect->branch[i] = (uint8_t)(chosen - EVENT_MIRRORED);
-            }
-            glint_rays_put(rays, frame->plan, i, &next);
+            draw_next(indirect, rays, number, i);
+            (event == GLINT_EVENT_SCATTER ? indirect->scattered : indirect->spread)[g] |= (uint16_t)(bits & -bits);
+            glint_rays_mark(rays->inward, i, glint_has_lane(tile->hit.back, i));
+            indirect->event[i] = (uint8_t)event;
         }
         any |= rays->active[g];
     }
@@ -418,7 +415,7 @@ static void collect_group(const struct glint_indirect *indirect, const glint_pla
         double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]], weight[3], rest[3], all[3];
         for (int c = 0; c < 3; c++) {
             rest[c] = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
-            weight[c] = rays->weight[c][i];
+            weight[c] = rays->throughput[c][i];
             all[c] = light[c][lane] + rest[c];
         }
         limit_light(indirect, plan, i, batch->tile.at.hits[g] >> lane & 1, all, weight);
@@ -439,7 +436,7 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
     const glint_rays *rays = indirect->batch.rays;
     glint_sky_args args = { .group_count = rays->group_count, .missed = missed };
     for (int c = 0; c < 3; c++) {
-        args.weight[c] = rays->weight[c];
+        args.weight[c] = rays->throughput[c];
         args.background[c] = background ? background[c] : 0;
         args.sum[c] = to->film.sum[indirect->term < GLINT_TERM_COUNT ? indirect->term : GLINT_TERM_INDIRECT][c];
     }
@@ -453,7 +450,7 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
             continue;
         for (int c = 0; c < 3; c++) {
             light[c] = background ? background[c] : indirect->batch.shown[c][i];
-            weight[c] = rays->weight[c][i];
+            weight[c] = rays->throughput[c][i];
         }
         limit_light(indirect, frame->plan, i, false, light, weight);
         for (int c = 0; c < 3; c++)
@@ -492,19 +489,6 @@ static void count_rays(const struct glint_indirect *indirect, glint_tile *to)
     }
 }
 
-/// Lights the hits. The light of faces and vertices is cached for all readers, so it uses every sample of the lights.
-static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
-{
-    glint_batch *batch = &indirect->batch;
-    const glint_stage *vertex = frame->plan->runs[GLINT_STAGE_VERTEX] ? glint_stage_table[GLINT_STAGE_VERTEX] : NULL;
-    glint_sample_walk walk = { .rays = true, .points = true, .any = any, .shines = any };
-    if (vertex)
-        vertex->step[GLINT_AT_SIGHT](&batch->tile, frame, &walk);
-    glint_batch_shine(batch, &indirect->frame, walk.shines);
-    if (vertex)
-        vertex->step[GLINT_AT_REST](&batch->tile, frame, &walk);
-}
-
 void glint_indirect_follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to,
                            uint64_t number)
 {
@@ -520,7 +504,7 @@ void glint_indirect_follow(struct glint_indirect *indirect, const glint_tile_fra
             continue;
         }
         if (any || batch->whole)
-            light(indirect, frame, any);
+            glint_batch_light(batch, frame, &indirect->frame, any);
         collect(indirect, frame, to);
         any = any && go_on(indirect, frame, number, step);
     }

@@ -31,20 +31,26 @@ static void find_shares(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_find_patterns(tile, frame);
 }
 
-/// Returns the continued ray of sample i: the refracted one or, at a translucent surface, the straight one with the
-/// weight of both.
-static glint_ray ray_beyond(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i)
+/// Continues the ray of sample i: the refracted one or, at a translucent surface, the straight one with the light of both.
+static void go_beyond(const glint_batch *batch, const glint_tile_frame *frame, uint32_t i, glint_rays *rays)
 {
-    const bool ends = !(batch->rays->depth[batch->ray_of[i]] < frame->plan->desc.max_depth);
-    glint_ray split[GLINT_BRANCHES];
-    glint_batch_split(batch, &batch->tile, frame, i, split);
-    const glint_ray *refracted = &split[GLINT_BRANCH_REFRACTED], *straight = &split[GLINT_BRANCH_STRAIGHT];
-    if (!frame->plan->clears || !(straight->weight[0] > 0))
-        return *refracted;
-    glint_ray ray = *straight;
-    for (int c = 0; c < 3 && !ends; c++)
-        ray.weight[c] += refracted->weight[c];
-    return ray;
+    const uint32_t ray = batch->ray_of[i];
+    const bool ends = !(batch->rays->depth[ray] < frame->plan->desc.max_depth);
+    double throughput[GLINT_SPLITS][3];
+    for (int event = 0; event < GLINT_SPLITS; event++)
+        for (int c = 0; c < 3; c++)
+            throughput[event][c] = batch->rays->throughput[c][ray];
+    glint_bsdf_weights(batch, &batch->tile, frame, i, throughput);
+    const bool straight = frame->plan->clears && throughput[GLINT_EVENT_STRAIGHT][0] > 0;
+    const glint_event event = straight ? GLINT_EVENT_STRAIGHT : GLINT_EVENT_REFRACT;
+    double *sent = throughput[event];
+    for (int c = 0; c < 3 && straight && !ends; c++)
+        sent[c] += throughput[GLINT_EVENT_REFRACT][c];
+    if (!(fmax(sent[0], fmax(sent[1], sent[2])) > batch->rays->min_throughput[ray]))
+        return;
+    glint_ray_continue(batch, &batch->tile, frame, i, event, rays, i);
+    for (int c = 0; c < 3; c++)
+        rays->throughput[c][i] = sent[c];
 }
 
 /// Sends on the rays at surfaces that let light through. Returns whether there are any.
@@ -61,11 +67,8 @@ static bool go_through(struct glint_indirect *indirect, const glint_tile_frame *
         for (unsigned bits = batch->wanted[g]; bits; bits &= bits - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits);
             const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
-            if (!m->transmits && !m->clears)
-                continue;
-            const glint_ray through = ray_beyond(batch, frame, i);
-            if (fmax(through.weight[0], fmax(through.weight[1], through.weight[2])) > through.least)
-                glint_rays_put(rays, frame->plan, i, &through);
+            if (m->transmits || m->clears)
+                go_beyond(batch, frame, i, rays);
         }
         any |= rays->active[g];
     }
@@ -85,6 +88,6 @@ bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_f
     glint_indirect_collect_missed(indirect, frame, missed, white, to);
     for (uint32_t i = 0; frame->plan->light_groups && i < batch->rays->group_count * GLINT_GROUP; i++)
         for (int c = 0; c < 3 && glint_has_lane(missed, i); c++) // weights are ambient light
-            glint_groups_add_ambient(to, frame->plan, batch->rays->pixel[i], c, batch->rays->weight[c][i]);
+            glint_groups_add_ambient(to, frame->plan, batch->rays->pixel[i], c, batch->rays->throughput[c][i]);
     return any && (frame->plan->transmits || frame->plan->clears) && go_through(indirect, frame, step);
 }

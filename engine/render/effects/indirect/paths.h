@@ -3,7 +3,7 @@
 #define GLINT_INDIRECT_PATHS_H
 
 #include "engine/base/sequence.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/event.h"
 
 /// Points of the unit square, for the scattered rays: see glint_scatter_args.
 typedef struct draws {
@@ -30,12 +30,12 @@ struct glint_indirect {
     uint32_t lane[GLINT_TILE_SAMPLES]; ///< index of the pixel in its block
     draws first_draws, next_draws; ///< for the points, and for the hits of their paths
     glint_rays first; ///< the first ray of each point, by index; paths of a point differ only in direction
-    double weight[3][GLINT_TILE_SAMPLES]; ///< weights of these rays before anything is subtracted
+    double weight[3][GLINT_TILE_SAMPLES]; ///< throughput of these rays before anything is subtracted
     glint_rays next[2]; ///< rays of odd and even steps
     double share[GLINT_TILE_SAMPLES]; ///< with plan->sky: weights of scattered rays by their densities
     uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples whose path is scattered
     uint16_t spread[GLINT_TILE_GROUPS]; ///< samples whose path a rough surface reflects or refracts
-    uint8_t branch[GLINT_TILE_SAMPLES]; ///< which of the two, a glint_branch
+    uint8_t event[GLINT_TILE_SAMPLES]; ///< which of the two, a glint_event
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< directions of scattered paths
     _Alignas(64) double up[3][GLINT_TILE_SAMPLES]; ///< real: (0, 0, 1), for points of the unit disk
     // an argument and the results of the stage spread, for the rays that plain rough surfaces reflect
@@ -106,10 +106,10 @@ static inline bool glint_indirect_leaves(const glint_tile *tile, const glint_pla
 /// Finds the points and their numbers of paths. Returns the largest number.
 uint32_t glint_indirect_find_points(struct glint_indirect *indirect, const glint_tile *to,
                                     const glint_tile_frame *frame, const glint_tile *seen, const glint_batch *from);
-/// Starts the first rays of the paths of point i, with the factor `factor`, which differ only in their directions.
-/// ray: begun by glint_batch_start_ray.
+/// Completes the first ray of the paths of point i, which glint_ray_begin has put into indirect->first: its throughput is
+/// multiplied by `factor`. The first rays of a point differ only in their directions.
 void glint_indirect_begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan, uint32_t i,
-                                uint32_t paths, const double *factor, glint_ray *ray, glint_pixel_block *block);
+                                uint32_t paths, const double *factor, glint_pixel_block *block);
 /// Returns the number of paths of a point, which is smaller for points seen weakly in mirrors.
 uint32_t glint_indirect_paths_of(const glint_plan *plan, const glint_batch *from, uint32_t i);
 /// Selects the points that have a path number `path`, and draws for them. Returns whether there are any.

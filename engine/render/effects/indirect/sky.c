@@ -61,6 +61,6 @@ void glint_indirect_weigh_sky(glint_rays *rays, const uint16_t *wanted, const do
             if (!(share[i] > 0))
                 rays->active[g] &= (uint16_t) ~(bits & -bits);
             for (int c = 0; c < 3; c++)
-                rays->weight[c][i] *= share[i];
+                rays->throughput[c][i] *= share[i];
         }
 }

@@ -8,7 +8,7 @@
 #define GLINT_LIGHT_GROUPS_H
 
 #include "engine/render/effects/light_groups/plan.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/batch.h"
 
 #define GLINT_GROUP_SUMS 3 ///< diffuse, specular and other light
 

@@ -1,7 +1,7 @@
 #include "engine/render/effects/pattern/inputs.h"
 #include "engine/base/vec.h"
 #include "engine/render/effects/pattern/uv.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/batch.h"
 
 #include <math.h>
 

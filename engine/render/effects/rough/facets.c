@@ -105,7 +105,7 @@ static double unmasked(const view *v, double x, double c, bool through)
 }
 
 /// Returns the cosine of the refracted ray at a facet; a negative number for total reflection. c: the cosine of the
-/// arriving ray. ratio: see glint_batch_ratio.
+/// arriving ray. ratio: see glint_event_ratio.
 static double refracted_cosine(double c, double ratio)
 {
     const double k = 1 - ratio * ratio * (1 - c * c);
@@ -120,7 +120,7 @@ static double dielectric(double c, double s, double ratio)
 }
 
 /// Returns the reflected share in channel c at a facet, without the material's factors. cosine: of the arriving ray and
-/// the facet. ratio: see glint_batch_ratio; only read with `fresnel`.
+/// the facet. ratio: see glint_event_ratio; only read with `fresnel`.
 static double reflectance(const glint_bounce_material *m, int c, double cosine, double ratio)
 {
     if (m->fresnel)
@@ -208,57 +208,63 @@ void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const 
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const view v = look(tile, frame->plan, i, m);
-    const double ratio = glint_batch_ratio(batch, tile, frame, i), least = LEAST_CHANCE;
+    const double ratio = glint_event_ratio(batch, tile, frame, i), least = LEAST_CHANCE;
     double facet[3];
     draw_facet(&v, disk, facet);
     share[0] = share[1] = 0;
     for (int c = 0; c < 3; c++) {
         const double r = fmax(reflectance(m, c, fmin(vec_dot(v.to_eye, facet), 1), ratio), least);
-        share[GLINT_BRANCH_MIRRORED] += m->mirrors ? m->mirror[c] * m->specular[c] * r : 0;
+        share[GLINT_EVENT_MIRROR] += m->mirrors ? m->mirror[c] * m->specular[c] * r : 0;
         if (m->transmits)
-            share[GLINT_BRANCH_REFRACTED] += fmax(m->transmission[c], least) * (m->fresnel ? fmax(1 - r, least) : 1);
+            share[GLINT_EVENT_REFRACT] += fmax(m->transmission[c], least) * (m->fresnel ? fmax(1 - r, least) : 1);
     }
 }
 
-/// Fills the weights of a ray at a facet. Totally reflected light has not crossed the surface: see glint_batch_weigh.
-static void weigh(const glint_bounce_material *m, glint_branch branch, double cosine, double ratio, double factor,
+/// Fills the weights of a ray at a facet. Totally reflected light has not crossed the surface: see glint_bsdf_weights.
+static void weigh(const glint_bounce_material *m, glint_event event, double cosine, double ratio, double factor,
                   double weight[3])
 {
     const bool total = refracted_cosine(cosine, ratio) < 0;
     for (int c = 0; c < 3; c++) {
         const double r = reflectance(m, c, cosine, ratio), mirror = m->mirror[c] * m->specular[c];
         const double beyond = (total ? fmax(1 - m->clear - mirror, 0) : m->transmission[c]) * (m->fresnel ? 1 - r : 1);
-        weight[c] = glint_weight(weight[c] * ((branch == GLINT_BRANCH_MIRRORED ? mirror * r : beyond) * factor));
+        weight[c] = glint_clamp_throughput(weight[c] * ((event == GLINT_EVENT_MIRROR ? mirror * r : beyond) * factor));
     }
 }
 
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], const double *cube, glint_branch branch, glint_ray *ray)
+                       const double disk[2], const double *cube, glint_event event, glint_rays *rays, uint32_t n)
 {
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &buffer);
     const view v = look(tile, frame->plan, i, m);
-    const double ratio = glint_batch_ratio(batch, tile, frame, i);
-    double facet[3], out[3], share = 1;
-    const glint_sky *sky = branch == GLINT_BRANCH_MIRRORED ? frame->plan->sky : NULL;
+    const double ratio = glint_event_ratio(batch, tile, frame, i);
+    double facet[3], out[3], direction[3], weight[3], share = 1;
+    const glint_sky *sky = event == GLINT_EVENT_MIRROR ? frame->plan->sky : NULL;
     const double x = sky ? draw_either(&v, sky, cube, disk, facet, &share) : draw_facet(&v, disk, facet);
     const double cosine = fmin(vec_dot(v.to_eye, facet), 1);
-    const double s = branch == GLINT_BRANCH_REFRACTED ? refracted_cosine(cosine, ratio) : -1;
+    const double s = event == GLINT_EVENT_REFRACT ? refracted_cosine(cosine, ratio) : -1;
     const bool through = s >= 0;
     for (int k = 0; k < 3; k++)
         out[k] = through ? (ratio * cosine - s) * facet[k] - ratio * v.to_eye[k] : 2 * cosine * facet[k] - v.to_eye[k];
-    for (int c = 0; c < 3; c++)
-        ray->direction[c] = (out[0] * v.axis[0][c] + out[1] * v.axis[1][c]) + out[2] * v.axis[2][c];
-    vec_normalize(ray->direction, ray->direction);
+    for (int c = 0; c < 3; c++) {
+        direction[c] = (out[0] * v.axis[0][c] + out[1] * v.axis[1][c]) + out[2] * v.axis[2][c];
+        weight[c] = rays->throughput[c][n];
+    }
+    vec_normalize(direction, direction);
     const double along = through ? -out[2] : out[2];
-    vec_scale(out, ray->direction, through ? -1 : 1);
+    vec_scale(out, direction, through ? -1 : 1);
     const bool leaves = along > 0 && glint_tile_leaves(tile, frame->plan, i, out);
     const double factor = leaves && x >= 0 ? unmasked(&v, x, along, through) : 0;
-    weigh(m, branch, cosine, ratio, factor * share, ray->weight);
-    ray->depth++;
-    ray->inward = glint_has_lane(tile->hit.back, i) != through;
-    ray->sight = false;
-    ray->blind = m->facets ? !through : ray->scatters > 0;
+    weigh(m, event, cosine, ratio, factor * share, weight);
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(rays->direction[c], frame->plan->desc.precision, n, direction[c]);
+        rays->throughput[c][n] = weight[c];
+    }
+    rays->depth[n]++;
+    rays->camera_path[n] = false;
+    glint_rays_mark(rays->inward, n, glint_has_lane(tile->hit.back, i) != through);
+    glint_rays_mark(rays->skip_emitters, n, m->facets ? !through : rays->scatters[n] > 0);
     if (through && frame->plan->transmits)
-        glint_batch_cross(tile, frame, i, &ray->media);
+        glint_event_cross(tile, frame, i, &rays->media[n]);
 }

@@ -53,25 +53,26 @@ static bool spreads(const glint_tile *seen, const glint_plan *plan, const glint_
 
 /// Fills the arguments of spread for point i, and the parts of its rays that are equal for all paths.
 static void note_plain(struct glint_rough *rough, const glint_tile *seen, const glint_bounce_material *m, uint32_t i,
-                       uint32_t paths, glint_ray *ray)
+                       uint32_t paths)
 {
     const glint_precision precision = rough->plan.desc.precision;
+    glint_rays *first = &rough->paths->first;
     double direction[3];
     for (int c = 0; c < 3; c++)
         direction[c] = glint_tile_direction(seen, precision, c, i);
     vec_normalize(direction, direction);
     for (int c = 0; c < 3; c++) {
         glint_real_put(rough->ray[c], precision, i, direction[c]);
-        const double most = ray->weight[c] / paths * (m->mirror[c] * m->specular[c]), f0 = m->schlick ? m->f0[c] : 1;
+        const double most = first->throughput[c][i] / paths * (m->mirror[c] * m->specular[c]), f0 = m->schlick ? m->f0[c] : 1;
         rough->weight[c][i] = most * f0;
         rough->grazing[c][i] = most * (1 - f0);
     }
     glint_real_put(rough->alpha, precision, i, m->alpha);
     rough->plain[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
-    ray->depth++;
-    ray->inward = glint_has_lane(seen->hit.back, i);
-    ray->sight = false;
-    ray->blind = m->facets || ray->scatters > 0;
+    first->depth[i]++;
+    first->camera_path[i] = false;
+    glint_rays_mark(first->inward, i, glint_has_lane(seen->hit.back, i));
+    glint_rays_mark(first->skip_emitters, i, m->facets || first->scatters[i] > 0);
 }
 
 /// Begins the paths of point i. Returns their number.
@@ -82,19 +83,19 @@ static uint32_t begin_point(struct glint_rough *rough, const glint_tile *to, con
     const glint_plan *plan = &rough->plan;
     glint_bounce_material buffer;
     const glint_bounce_material *m = glint_tile_bouncing(seen, plan, i, &buffer);
-    glint_ray ray;
+    glint_rays *first = &rough->paths->first;
     rough->mirrors[i] = m->mirrors && vec_dot(m->mirror, m->specular) > 0;
     rough->transmits[i] = m->transmits;
     if (!rough->mirrors[i] && !rough->transmits[i])
         return 0;
     const bool both = rough->mirrors[i] && rough->transmits[i];
     const uint32_t paths = m->alpha < SHARP && !both ? 1 : glint_indirect_paths_of(plan, from, i);
-    glint_batch_start_ray(from ? from : &rough->paths->batch, seen, &rough->frame, i, &ray);
+    glint_ray_begin(from ? from : &rough->paths->batch, seen, &rough->frame, i, first, i);
     if (!from)
-        ray.term = GLINT_TERM_MIRROR;
+        first->term[i] = GLINT_TERM_MIRROR;
     if (glint_is_plain(plan, seen->surface.material[i]))
-        note_plain(rough, seen, m, i, paths, &ray);
-    glint_indirect_begin_point(rough->paths, to, plan, i, paths, whole, &ray, block);
+        note_plain(rough, seen, m, i, paths);
+    glint_indirect_begin_point(rough->paths, to, plan, i, paths, whole, block);
     return paths;
 }
 
@@ -118,18 +119,18 @@ static uint32_t find_points(struct glint_rough *rough, const glint_tile *to, con
     return most;
 }
 
-/// Draws the branch of path `number` of point i at the facet of a point of the disk. Returns its probability.
-static double draw_branch(const struct glint_rough *rough, const glint_batch *batch, const glint_tile *seen, uint32_t i,
-                          uint64_t number, const double disk[2], glint_branch *branch)
+/// Draws the event of path `number` of point i at the facet of a point of the disk. Returns its probability.
+static double sample_event(const struct glint_rough *rough, const glint_batch *batch, const glint_tile *seen, uint32_t i,
+                          uint64_t number, const double disk[2], glint_event *event)
 {
     double lot[2], share[2];
-    *branch = rough->mirrors[i] ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    *event = rough->mirrors[i] ? GLINT_EVENT_MIRROR : GLINT_EVENT_REFRACT;
     if (!rough->mirrors[i] || !rough->transmits[i])
         return 1;
     glint_rough_shares(batch, seen, &rough->frame, i, disk, share);
     glint_indirect_draw(rough->paths, i, number, 1, lot);
-    const double mirrored = share[GLINT_BRANCH_MIRRORED] / (share[0] + share[1]);
-    *branch = lot[0] < mirrored ? GLINT_BRANCH_MIRRORED : GLINT_BRANCH_REFRACTED;
+    const double mirrored = share[GLINT_EVENT_MIRROR] / (share[0] + share[1]);
+    *event = lot[0] < mirrored ? GLINT_EVENT_MIRROR : GLINT_EVENT_REFRACT;
     return lot[0] < mirrored ? mirrored : 1 - mirrored;
 }
 
@@ -139,23 +140,23 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
 {
     struct glint_indirect *paths = rough->paths;
     const glint_batch *batch = from ? from : &paths->batch;
-    glint_branch branch;
-    const double chance = draw_branch(rough, batch, seen, i, number, disk, &branch);
+    glint_event event;
+    const double pdf = sample_event(rough, batch, seen, i, number, disk, &event);
+    glint_rays *first = &paths->first;
+    const double least = first->min_throughput[i];
     double cube[3], lot[2];
-    glint_ray ray;
-    glint_batch_start_ray(batch, seen, &rough->frame, i, &ray);
+    glint_ray_begin(batch, seen, &rough->frame, i, first, i);
     if (!from)
-        ray.term = branch == GLINT_BRANCH_MIRRORED ? GLINT_TERM_MIRROR : GLINT_TERM_TRANSMISSION;
-    ray.point = i;
-    ray.least = paths->first.least[i];
+        first->term[i] = event == GLINT_EVENT_MIRROR ? GLINT_TERM_MIRROR : GLINT_TERM_TRANSMISSION;
+    first->point[i] = i;
+    first->min_throughput[i] = least;
     for (int c = 0; c < 3; c++)
-        ray.weight[c] = glint_weight(paths->weight[c][i] / chance);
+        first->throughput[c][i] = glint_clamp_throughput(paths->weight[c][i] / pdf);
     glint_indirect_square(&paths->first_draws, i, path, cube);
     if (rough->plan.sky)
-        glint_indirect_draw(paths, i, number, 1, lot); // draw_branch takes the first of them
+        glint_indirect_draw(paths, i, number, 1, lot); // sample_event takes the first of them
     cube[2] = rough->plan.sky ? lot[1] : 0;
-    glint_rough_leave(batch, seen, &rough->frame, i, disk, cube, branch, &ray);
-    glint_rays_put(&paths->first, &rough->plan, i, &ray);
+    glint_rough_leave(batch, seen, &rough->frame, i, disk, cube, event, first, i);
 }
 
 /// Makes the first rays of the points in `wanted` that the stage spread serves.
@@ -167,7 +168,7 @@ static void begin_plain(struct glint_rough *rough, const glint_tile *seen, const
     for (int c = 0; c < 3; c++) {
         args.head_on[c] = rough->weight[c];
         args.added[c] = rough->grazing[c];
-        args.ray_weight[c] = rough->paths->first.weight[c];
+        args.ray_weight[c] = rough->paths->first.throughput[c];
         args.normal[c] = seen->surface.normal[c];
         args.ray[c] = rough->ray[c];
         args.direction[c] = rough->paths->first.direction[c];

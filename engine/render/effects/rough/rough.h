@@ -2,11 +2,11 @@
 #ifndef GLINT_ROUGH_H
 #define GLINT_ROUGH_H
 
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/event.h"
 
 /// Estimates the shares of a ray's light that the rough surface of sample i reflects and refracts, to choose between
-/// them. Both are above 0 where light may go on. disk: see glint_rough_leave. share: by GLINT_BRANCH_MIRRORED and
-/// GLINT_BRANCH_REFRACTED.
+/// them. Both are above 0 where light may go on. disk: see glint_rough_leave. share: by GLINT_EVENT_MIRROR and
+/// GLINT_EVENT_REFRACT.
 void glint_rough_shares(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                         const double disk[2], double share[2]);
 
@@ -25,11 +25,11 @@ static inline double glint_schlick(const glint_bounce_material *m, int c, double
     return m->schlick ? m->f0[c] + (1 - m->f0[c]) * grazing : 1;
 }
 
-/// Turns a ray that starts at sample i (glint_batch_start_ray) into one that its rough surface reflects or refracts:
-/// direction, side, depth, media; multiplies the weight. The weight is 0 where the drawn facet sends the ray through the
+/// Turns ray n, which glint_ray_begin has started at sample i, into one that its rough surface reflects or refracts:
+/// direction, side, depth, media; multiplies the throughput, which is 0 where the drawn facet sends the ray through the
 /// surface. disk: a point of the unit disk, where equal areas are equally likely. cube: the point of the unit square that
 /// it belongs to, and a third number in 0 .. 1; only read under a sky with bright parts.
 void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], const double *cube, glint_branch branch, glint_ray *ray);
+                       const double disk[2], const double *cube, glint_event event, glint_rays *rays, uint32_t n);
 
 #endif

@@ -12,7 +12,7 @@
 #include "engine/render/effects/light_groups/light_groups.h"
 #include "engine/render/effects/transparent_shadow/plan.h"
 #include "engine/render/frame/renderer.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/event.h"
 
 #include <stdlib.h>
 #include <string.h>

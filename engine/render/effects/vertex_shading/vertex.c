@@ -8,7 +8,7 @@
 #include "engine/base/vec.h"
 #include "engine/render/effects/light_groups/light_groups.h"
 #include "engine/render/effects/vertex_shading/shading_points.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/batch.h"
 
 #include <float.h>
 #include <sched.h>

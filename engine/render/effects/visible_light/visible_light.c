@@ -6,7 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/render/effects/light_groups/light_groups.h"
 #include "engine/render/effects/visible_light/plan.h"
-#include "engine/render/tile/batch.h"
+#include "engine/render/paths/batch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -316,7 +316,7 @@ static void look(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     if (in_sight(tile, frame)) {
         glint_tile_need_rays(tile, frame, walk);
         for (uint32_t g = 0; g < tile->group_count; g++)
-            lanes[g] = (uint16_t)(tile->active[g] & ~(tile->batch ? tile->batch->rays->blind[g] : 0));
+            lanes[g] = (uint16_t)(tile->active[g] & ~(tile->batch ? tile->batch->rays->skip_emitters[g] : 0));
         see_lights(tile, frame, lanes);
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
