@@ -44,6 +44,7 @@ local scene = glint.scene {
 
 -- glint.cos and glint.sin return the same bits on every machine, so that farms of different machines agree.
 return glint.animation {
+  orbit = true, -- the reader of a live figure may turn the view
   scene = scene, frames = P.frames, fps = 24, cyclic = true, width = 1280, height = 720, samples = 4,
   frame = function(t)
     local angle = 2 * math.pi * t

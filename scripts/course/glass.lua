@@ -15,6 +15,7 @@ if P.fresnel then
   glass.fresnel, glass.mirror = true, 1
 end
 return glint.animation {
+  orbit = true,
   scene = glint.scene {
     camera = glint.camera { eye = { 0, 2.6, 8 }, at = { 0, 0.9, 0 }, fov = 32 },
     ambient = 0.25, background = "#7f9fc0",

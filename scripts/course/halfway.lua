@@ -13,6 +13,7 @@ local function ball(x, model, exponent)
     model = model, diffuse = { 0.08, 0.22, 0.34 }, specular = 0.7, shininess = exponent } }
 end
 return glint.animation {
+  orbit = true,
   scene = glint.scene {
     camera = glint.camera { eye = { 0, 1.6, 10 }, at = { 0, 0, 0 }, fov = 24 },
     ambient = 0.12, background = "#10141c",

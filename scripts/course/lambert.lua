@@ -3,7 +3,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  angle = { 40, min = 0, max = 180, doc = "angle of the light from straight above, degrees" },
+  angle = { 40, min = 0, max = 180, unit = "°", doc = "angle of the light from straight above" },
 }
 
 local white = glint.material { diffuse = 0.9, ambient = 0 }

@@ -5,7 +5,7 @@ local P = glint.params {
   kind = { "point", choices = { "point", "directional", "spot", "disk", "sphere" }, doc = "kind of light" },
   height = { 6, min = 3, max = 15, doc = "height of the lamp" },
   radius = { 1.2, min = 0, max = 3, doc = "radius of a disk or sphere light" },
-  cone = { 22, min = 5, max = 45, doc = "half angle of the spot light's cone, degrees" },
+  cone = { 22, min = 5, max = 45, unit = "°", doc = "half angle of the spot light's cone" },
   falloff = { false, doc = "attenuate with the square of the distance" },
 }
 
@@ -32,6 +32,7 @@ local function ball(x, z, radius, color)
 end
 
 return glint.animation {
+  orbit = true,
   scene = glint.scene {
     camera = glint.camera { eye = { 0, 5, 10.5 }, at = { -0.3, 0.4, 0 }, fov = 27 },
     ambient = 0.08, background = "#10141c",

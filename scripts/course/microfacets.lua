@@ -15,6 +15,7 @@ local function ball(x, material)
   return glint.sphere { center = { x, 0, 0 }, radius = 1.3, material = material }
 end
 return glint.animation {
+  orbit = true,
   scene = glint.scene {
     camera = glint.camera { eye = { 0, 1, 10 }, at = { 0, 0, 0 }, fov = 22 },
     ambient = 0, background = "#10141c",

@@ -3,7 +3,7 @@ local glint = require "glint"
 
 local P = glint.params {
   segments = { 14, min = 4, max = 96, whole = true, doc = "faces around the equator" },
-  light = { 20, min = -90, max = 90, doc = "direction of the light, degrees from the viewer" },
+  light = { 20, min = -90, max = 90, unit = "°", doc = "direction of the light, from the viewer" },
   shininess = { 40, min = 1, max = 200, doc = "exponent of the highlight" },
 }
 

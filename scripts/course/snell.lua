@@ -3,7 +3,7 @@
 local glint = require "glint"
 
 local P = glint.params {
-  angle = { 50, min = 0, max = 89, doc = "angle of the beam from the normal, degrees" },
+  angle = { 50, min = 0, max = 89, unit = "°", doc = "angle of the beam from the normal" },
   ior = { 1.5, min = 1, max = 2.5, doc = "index of refraction of the block: water 1.33, glass 1.5, diamond 2.4" },
   from = { "above", choices = { "above", "inside" }, doc = "the side from which the beam comes" },
 }

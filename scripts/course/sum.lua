@@ -15,6 +15,7 @@ local function ball(x, z, radius, color)
     diffuse = { kd * color[1], kd * color[2], kd * color[3] }, specular = P.specular, shininess = 40 } }
 end
 return glint.animation {
+  orbit = true,
   scene = glint.scene {
     camera = glint.camera { eye = { 0, 3.4, 10 }, at = { 0, 1.1, 0 }, fov = 32 },
     ambient = P.ambient, background = "#10141c",

@@ -3,8 +3,8 @@
 local glint = require "glint"
 
 local P = glint.params {
-  light = { 35, min = 0, max = 90, doc = "angle between n and l, degrees" },
-  viewer = { 55, min = 0, max = 90, doc = "angle between n and v, on the other side, degrees" },
+  light = { 35, min = 0, max = 90, unit = "°", doc = "angle between n and l" },
+  viewer = { 55, min = 0, max = 90, unit = "°", doc = "angle between n and v, on the other side" },
   shininess = { 40, min = 1, max = 400, doc = "exponent of the highlight" },
   model = { "phong", choices = { "phong", "blinn_phong" }, doc = "(r.v)^n or (n.h)^n" },
 }

@@ -303,6 +303,10 @@ const shiftOf = page => page.evaluate(() => new Promise(resolve => {
 
 async function published() {
   run("publish", "lamp.lua", "-o", "moving_lamp.html", "--set", "tilt=30")
+  run("publish", "lamp.lua", "-o", "titled.html", "--title", "Exponent $n^2$")
+  const titled = await open(`file://${join(work, "titled.html")}`)
+  check(await titled.locator("h1 math msup").count() === 1 && (await titled.title()) === "Exponent $n^2$", "published: a heading has a formula")
+  await close(titled, "published: title")
   for (const [name, options] of [["desk", DESK], ["phone", PHONE]]) {
     const page = await open(`file://${join(work, "moving_lamp.html")}`, options), figure = figureOf(page)
     await figure.locator(".control").first().waitFor({ state: "visible" })
@@ -385,8 +389,33 @@ async function disk() {
   await close(page, "course")
 }
 
+// The playground has the same hands.
+async function playground() {
+  const page = await open("index.html#src=lamp.lua")
+  const quiet = () => page.waitForFunction(() => document.getElementById("state").textContent === "ready")
+  await quiet()
+  await page.locator(".handle").waitFor()
+  const codes = () => page.locator("#picture").evaluate(shown => [...shown.getContext("2d").getImageData(0, 0, shown.width, shown.height).data].join())
+  const turnsBy = async (from, dx) => {
+    const before = await codes()
+    await page.mouse.move(...from)
+    await page.mouse.down()
+    await page.mouse.move(from[0] + dx / 2, from[1])
+    await page.mouse.move(from[0] + dx, from[1])
+    await page.mouse.up()
+    await page.waitForTimeout(400)
+    await quiet()
+    return await codes() !== before
+  }
+  const picture = await boxOf(page.locator("#hands"))
+  check(await turnsBy([picture.x + 30, picture.y + 30], 60), "playground: a drag turns the view")
+  check(await turnsBy(middleOf(await boxOf(page.locator(".handle"))), -40), "playground: a drag moves the lamp")
+  check(await page.getByLabel("Lamp x").inputValue() !== "1.5", "playground: the fields follow")
+  await close(page, "playground")
+}
+
 const only = process.env.T ?? ""
-for (const test of [controls, attributes, errors, hands, phone, published, recipe, disk]) {
+for (const test of [controls, attributes, errors, hands, phone, published, recipe, disk, playground]) {
   if (!test.name.includes(only)) continue
   try {
     await test()

@@ -9,11 +9,11 @@ const SLOP = 4            // CSS pixels that a finger moves before the view turn
 export const STILL = { yaw: 0, pitch: 0, zoom: 1, right: 0, up: 0 }
 
 export const gestureStyle = `
-  .hands { position: absolute; inset: 0; overflow: hidden; }
-  .hands.turns { cursor: grab; touch-action: pan-y; user-select: none; -webkit-user-select: none; }
+  .hands { position: absolute; inset: 0; overflow: hidden; pointer-events: none; }
+  .hands.turns { pointer-events: auto; cursor: grab; touch-action: pan-y; user-select: none; -webkit-user-select: none; }
   .hands.turns:active { cursor: grabbing; }
   .handle { position: absolute; width: 2.75rem; height: 2.75rem; min-height: 0; margin: -1.375rem; padding: 0; border: 0; background: none;
-    cursor: move; touch-action: none; }
+    pointer-events: auto; cursor: move; touch-action: none; }
   .handle::before { content: ""; position: absolute; inset: 0.875rem; border: 2px solid #fff; border-radius: 50%; background: #1f6fd680;
     box-shadow: 0 0 0 1.5px #0009; }
   .handle:hover::before, .handle:focus-visible::before { inset: 0.75rem; }

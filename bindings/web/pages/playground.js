@@ -7,11 +7,12 @@ import { lua } from "@codemirror/legacy-modes/mode/lua"
 import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
 import { control, controlStyle } from "./controls.js"
+import { Gestures, gestureStyle, orbitOf, STILL } from "./gestures.js"
 import { loadWithFont, quality, Renderer, show, wait } from "./renderer.js"
 
 const TYPING_MS = 350 // delay between the last key and the script's run
 const get = id => document.getElementById(id)
-document.head.append(Object.assign(document.createElement("style"), { textContent: controlStyle }))
+document.head.append(Object.assign(document.createElement("style"), { textContent: controlStyle + gestureStyle }))
 const engine = loadWithFont()
 
 let examples = []
@@ -103,12 +104,25 @@ const page = () => {
   return sizeOf(get("frame-of-picture").getBoundingClientRect().width)
 }
 
+const hands = new Gestures(get("hands"), {
+  turned: (_, moving) => ask(moving),
+  moved(name, value, moving) {
+    controls.find(one => one.param.name === name)?.made.set(value)
+    values = { ...values, [name]: value }
+    ask(moving)
+  },
+  pointOf: name => values[name] ?? job.params.find(param => param.name === name).value,
+})
+
 function ask(coarse) {
-  renderer.ask({ frame, set: values, view: get("pass").value }, coarse)
+  const orbit = orbitOf(hands.view)
+  renderer.ask({ frame, set: values, view: get("pass").value, ...orbit && { orbit } }, coarse)
 }
 
 function shown(image, { coarse, ms }) {
   show(get("picture"), get("over"), image)
+  hands.update(image, name => job.params.find(param => param.name === name).label ?? name)
+  get("reset").hidden = job.params.length === 0 && !image.orbit
   clearError()
   get("state").textContent = image.samples < image.ownSamples ? "refining" : coarse ? "coarse" : "ready"
   get("time").textContent = [`${image.width} × ${image.height}`, quality(image), `${Math.max(1, Math.round(ms))} ms`].filter(Boolean).join(", ")
@@ -132,7 +146,6 @@ function showControls() {
     get("params").replaceChildren(...controls.map(one => one.made.element))
     for (const { param, made } of controls) if (param.name in values) made.set(values[param.name])
   }
-  get("reset").hidden = job.params.length === 0
 }
 
 function showPlayer() {
@@ -162,6 +175,7 @@ get("play").addEventListener("click", () => {
 get("reset").addEventListener("click", () => {
   for (const { param, made } of controls) made.set(param.value)
   values = {}
+  hands.view = { ...STILL }
   ask(false)
 })
 for (const id of ["pass", "width"]) get(id).addEventListener("change", () => job && ask(false))
@@ -281,6 +295,7 @@ async function openExample(wanted) {
   files = read
   values = {}
   frame = 1
+  hands.view = { ...STILL }
   await setScript(text)
 }
 

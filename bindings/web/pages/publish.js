@@ -1,7 +1,9 @@
 // The script of a page written by `glint publish`. The page itself contains everything that it needs.
+import { setText } from "./formula.js"
 import { useEngine } from "./glint-figure.js"
 import { loadFrom } from "./inside.js"
 import { jobOf } from "./source.js"
 
+for (const heading of document.querySelectorAll("h1")) setText(heading, heading.textContent)
 useEngine(loadFrom(document.getElementById("glint-wasm").textContent, document.getElementById("glint-font")?.textContent))
 document.querySelector("glint-figure").given = jobOf(document)
