@@ -76,17 +76,19 @@ glint_status glint_reference_difference(const glint_reference *reference, const 
 /// Returns the seed of the frame's partner: an independent picture with four times the samples of the frame.
 double glint_partner_seed(const glint_render_desc *desc);
 /// Estimates the error of a picture of at least 2 samples a pixel: the root of the mean squared difference to the
-/// picture of infinitely many samples, in linear light, over pixels and channels. Channels that are not finite do not
-/// count. `partner` is rendered from the same scene with the frame's partner seed and four times the samples; with
+/// picture of infinitely many samples, over pixels and channels. tone: the error of the picture that people see, in
+/// fractions of white: light after exposure, curve and sRGB's transfer, whatever the tone's transfer and bits are; NULL: the
+/// error of linear light, where channels that are not finite do not count. `partner` is rendered from the same scene with the frame's partner seed and four times the samples; with
 /// fewer, the estimate is larger. Both images have the beauty pass.
 ///
 /// With one sample the estimate sees no edges, because the only sample is in the middle of the pixel. It never sees
 /// details that both pictures miss.
-glint_status glint_estimate_error(const glint_image *image, const glint_image *partner, double *rmse, glint_error *error);
+glint_status glint_estimate_error(const glint_image *image, const glint_image *partner, const glint_tone_desc *tone, double *rmse,
+                                  glint_error *error);
 /// Returns the number of pixels that hold most of the squared difference of the two pictures, (sum d^2)^2 / sum d^4; 0
 /// for pictures that glint_estimate_error refuses; infinite for equal pictures. With few pixels, fewer than 10 for example,
 /// the estimate depends on chance: rare bright paths may be missing from it, or dominate it.
-double glint_estimate_pixels(const glint_image *image, const glint_image *partner);
+double glint_estimate_pixels(const glint_image *image, const glint_image *partner, const glint_tone_desc *tone);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

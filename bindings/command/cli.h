@@ -134,7 +134,7 @@ struct cli_option {
     bool repeats; ///< the option may be given several times
     const char *group; ///< heading in --help for this option and those after it
 };
-#define CLI_OPTION_COUNT 78
+#define CLI_OPTION_COUNT 79
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 bool cli_option_may_lack(const cli_option *option); ///< returns whether the option's value is optional
 /// Pushes a table of the options that were given and whose values are flags, texts or numbers.
@@ -210,7 +210,7 @@ cli_progress *cli_progress_create(bool color);
 void cli_progress_destroy(cli_progress *progress);
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
 /// Shows that the current frame has been rendered with so many samples, and its error.
-void cli_progress_samples(cli_progress *progress, double samples, double error);
+void cli_progress_samples(cli_progress *progress, const glintL_step *step);
 /// Shows the current step of a study, the time spent so far, and the expected time of this step and of the rest.
 void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double remaining_ms);
 /// Shows that a film is being made and has `done` of `count` frames. NULL: the film is finished, and the bar counts

@@ -270,10 +270,15 @@ static bool check_auto(const cli_options *options, char *message)
 // Checks the options that go with --until and --seconds, which choose the samples of each picture.
 static bool check_samples(const cli_options *options, char *message)
 {
-    const char *name = options->request.until > 0 ? "until" : "seconds";
-    const char *samples = options->request.render_text[glintL_render_find("samples")];
-    if (options->request.until == 0 && options->request.seconds == 0)
+    const glintL_request *request = &options->request;
+    const char *name = request->until > 0 ? "until" : request->until_light > 0 ? "until-light" : "seconds";
+    const char *samples = request->render_text[glintL_render_find("samples")];
+    if (request->until == 0 && request->until_light == 0 && request->seconds == 0)
         return true;
+    if (request->until > 0 && request->until_light > 0) {
+        snprintf(message, MESSAGE, "--until-light: not with --until; expected one of the two");
+        return false;
+    }
     if (options->request.repeat > 1)
         snprintf(message, MESSAGE, "--%s: not with --repeat, which renders the same samples each time", name);
     else if (options->finds_exposure || options->finds_range)

@@ -188,11 +188,20 @@ static void report_rendering(void *context, const glintL_run *run, bool begins)
         cli_progress_update(output->progress, run, begins);
 }
 
-static void report_step(void *context, double samples, double error)
+static void report_step(void *context, const glintL_step *step)
 {
-    const cli_output *output = context;
+    cli_output *output = context;
     if (output->progress)
-        cli_progress_samples(output->progress, samples, error);
+        cli_progress_samples(output->progress, step);
+    if (output->json) {
+        glintL_json(output->data, "{\"event\":\"step\",\"index\":%g,\"step\":%g,\"samples\":%g,\"ms\":%g,\"error\":%g}", (double)step->index,
+                    (double)step->number, step->samples, step->ms, step->error);
+        cli_end_line(output);
+    } else if (!output->progress && !output->quiet) {
+        print_kept(output);
+        fprintf(stderr, "frame %" PRId64 ": step %d, %.0f samples, %.2f s, error %.3g\n", step->index, step->number, step->samples,
+                step->ms * 1e-3, step->error);
+    }
 }
 
 static void report_warning(void *context, const char *message)

@@ -24,7 +24,7 @@ struct cli_progress {
     double start_ms;
     int64_t done, kept, todo; // numbers of frames; todo 0: unknown
     char what[80]; // name of the step of a study, or of a film; "": the bar counts frames
-    double samples, error; // of the current frame so far; 0 samples: not known
+    glintL_step refined; // the last step of the current frame; number 0: none
     double done_ms, step_ms, remaining_ms;
     double film_ms; // start time of the film
     glint_renderer *renderer; // the renderer while it renders, otherwise NULL
@@ -86,8 +86,9 @@ static void draw(cli_progress *progress)
     }
     if (rate > 0 && progress->todo > 0)
         format_time(remaining, ((double)progress->todo - (double)progress->done - now) / rate);
-    if (progress->samples > 0)
-        snprintf(samples, sizeof samples, ", %.0f samples: error %.2g", progress->samples, progress->error);
+    if (progress->refined.number > 0)
+        snprintf(samples, sizeof samples, ", step %d, %.0f samples, %.1f s: error %.2g", progress->refined.number,
+                 progress->refined.samples, progress->refined.ms * 1e-3, progress->refined.error);
     snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
              *remaining ? ", " : "", remaining, *remaining ? " left" : "", samples,
              progress->renderer ? "" : ", in the script");
@@ -170,7 +171,7 @@ void cli_progress_update(cli_progress *progress, const glintL_run *run, bool ren
 {
     pthread_mutex_lock(&progress->lock);
     if (progress->done != run->done)
-        progress->samples = 0;
+        progress->refined.number = 0;
     progress->done = run->done;
     progress->kept = run->kept;
     progress->todo = run->todo;
@@ -178,11 +179,10 @@ void cli_progress_update(cli_progress *progress, const glintL_run *run, bool ren
     pthread_mutex_unlock(&progress->lock);
 }
 
-void cli_progress_samples(cli_progress *progress, double samples, double error)
+void cli_progress_samples(cli_progress *progress, const glintL_step *step)
 {
     pthread_mutex_lock(&progress->lock);
-    progress->samples = samples;
-    progress->error = error;
+    progress->refined = *step;
     pthread_mutex_unlock(&progress->lock);
 }
 

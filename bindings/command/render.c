@@ -60,6 +60,7 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run)
         output->progress = cli_progress_create(output->color);
     bool reported = false;
     if (glintL_run_refines(run)) { // a finished file does not tell its error, and no two pictures share results
+        run->request.starts_anew = run->request.force;
         run->request.force = run->request.no_reuse = run->keeps_images = true;
     }
     bool good = !(options->finds_exposure || options->finds_range) || measure(options, output, run, &reported);

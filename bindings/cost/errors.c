@@ -47,7 +47,7 @@ static int distance(lua_State *L)
     glint_error error;
     if (glint_estimate_error(cost_image_at(L, 1),
                              is_alone ? glint_reference_image(cost_study_of(L)->references[0]) : cost_image_at(L, 2),
-                             &rmse, &error))
+                             NULL, &rmse, &error))
         return cost_fail(L, &error);
     lua_pushnumber(L, rmse * rmse);
     return 1;

@@ -121,7 +121,7 @@ static bool is_kept(glintL_run *run, glintL_work *work, bool open)
 typedef struct called {
     const glint_scene *scene;
     int64_t number;
-    bool writes;
+    bool writes, open;
     glintL_run *run;
 } called;
 
@@ -135,12 +135,20 @@ static glintL_work *plan_again(void *context, const glintL_render *render)
     return work;
 }
 
-// Replaces a planned work by one that is rendered with the samples that it needs. False: the run has failed.
-static bool refine(glintL_run *run, const glint_scene *scene, glintL_work **work)
+static bool name_again(void *context, glintL_work *work)
 {
-    called call = { scene, (*work)->index, *(*work)->render.output && strcmp((*work)->render.output, "none") != 0, run };
+    const called *call = context;
+    glint_error error;
+    glintL_naming naming = naming_of(call->run, &work->render, true);
+    return !call->open && !naming.film && glintL_work_name(work, &naming, &error) == GLINT_OK;
+}
+
+// Replaces a planned work by one that is rendered with the samples that it needs. False: the run has failed.
+static bool refine(glintL_run *run, const glint_scene *scene, bool open, glintL_work **work)
+{
+    called call = { scene, (*work)->index, *(*work)->render.output && strcmp((*work)->render.output, "none") != 0, open, run };
     const glintL_render render = (*work)->render;
-    const glintL_frame_planner planner = { &render, plan_again, &call };
+    const glintL_frame_planner planner = { &render, plan_again, name_again, &call };
     glintL_work *refined = glintL_refine(run, &planner, call.number);
     if (!refined)
         return false;
@@ -227,7 +235,7 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     if (glint_camera_get(glint_scene_get(scene)->camera)->shutter > 0)
         glintL_warn_of_shutter(run);
     bool open = !run->measures && is_open(run, render);
-    bool good = (!glintL_run_refines(run) || refine(run, scene, &work)) && render_call(run, work, open);
+    bool good = (!glintL_run_refines(run) || refine(run, scene, open, &work)) && render_call(run, work, open);
     if (good)
         glintL_look_for_black(run, scene, work);
     if (good && fill_handle(L, first, scene, work, open, &error))

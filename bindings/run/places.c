@@ -117,7 +117,7 @@ bool glintL_places_add(glintL_run *run, const glintL_work *work)
         int64_t first = 0;
         const glintL_file *file = &work->files[i];
         const bool replaced = replaces(run, file->path, hash_picture(file, work->index), work->index, &first);
-        if (first == 0) // the first picture of this run in the file
+        if (first == 0 && !work->follows_step) // the first picture of this run in the file
             warn_of_other_run(run, file, work->index);
         if (!replaced || warned)
             continue;

@@ -69,7 +69,9 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
     snprintf(out->frame, sizeof out->frame, "%" PRId64, work->index - run->point_first);
     list_options(&work->render, out->options, sizeof out->options);
     add(out, "Software", "glint " GLINT_VERSION);
-    out->text[out->count++] = (glint_text) { "glint:key", file->key };
+    GLINTL_SPELL_KEY(out->key, file->key, *work->unfinished);
+    out->text[out->count++] = (glint_text) { "glint:key", out->key };
+    add(out, "glint:unfinished", work->unfinished);
     add(out, "glint:script", run->script);
     add(out, "glint:source", run->source);
     add(out, "glint:params", run->params_text);

@@ -244,7 +244,7 @@ static void flush_records(glintL_run *run)
 {
     while (run->head && run->head->files_left == 0) {
         glintL_record *record = run->head;
-        if (!record->failed) {
+        if (!record->failed && !record->is_step) {
             if (record->is_last)
                 count_record(run, record);
             if (record->is_last && record->film && !glintL_film_add(record->film, record->index, record->files[GLINT_PASS_BEAUTY]))

@@ -176,9 +176,11 @@ typedef struct glintL_request {
     double fps; ///< frame rate of films; 0: from the script
     int threads; ///< 0: one per processor
     int repeat; ///< >= 1
-    double until; ///< error at which a frame has enough samples; 0: not given
+    double until; ///< error of the picture as seen at which a frame has enough samples; 0: not given
+    double until_light; ///< the same for the error of linear light
     double seconds; ///< time for the samples of a frame; 0: not given
     bool force, no_reuse;
+    bool starts_anew; ///< refining does not go on from an unfinished picture
     bool is_untrusted; ///< the script is; its pictures must have plain names
     char *folder; ///< owned; folder for an untrusted script's pictures; NULL: none are written
     glintL_warnings warnings;
@@ -199,6 +201,7 @@ typedef struct glintL_record {
     int64_t index;
     int repeat; ///< 1 ..; 0: no repeats
     bool kept, is_last; ///< is_last: the last of its repeats
+    bool is_step; ///< the picture is replaced by one of more samples, and not reported
     double build_ms, encode_ms, write_ms;
     double pixel_count;
     double samples, error; ///< samples of a pixel and the estimated error, if the run refines frames; 0 samples: it does not
@@ -212,6 +215,10 @@ typedef struct glintL_record {
     struct glintL_film *film; ///< the film that gets the beauty pass; NULL: none
     struct glintL_record *next;
 } glintL_record;
+
+#define GLINTL_KEY_SIZE 48
+/// Writes the key of a file as its text entry. is_unfinished: of a picture that --until has not finished.
+#define GLINTL_SPELL_KEY(out, key, is_unfinished) snprintf(out, GLINTL_KEY_SIZE, "%s%s", key, is_unfinished ? "-unfinished" : "")
 
 typedef struct glintL_file {
     glint_pass pass;
@@ -229,6 +236,8 @@ typedef struct glintL_work {
     glint_image *image; ///< NULL before rendering
     glint_frame_stats stats;
     double error; ///< the estimate, if the run refines frames
+    bool follows_step; ///< its files replace those of an unfinished picture that this run has left
+    char unfinished[96]; ///< text of a file that a run with more samples goes on from; "": the picture is finished
     char *sweep; ///< owned; "name=value" lines: the frame's place in a glint.sweep; NULL: none
     char *names; ///< owned; "axis=text" lines: `names` of the sweep's sheet; NULL: none
     struct glintL_film *film;
@@ -241,6 +250,13 @@ const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char buff
 
 // ---- state.c, records.c ----
 
+/// A step of a frame that is refined, see until.c.
+typedef struct glintL_step {
+    int64_t index; ///< of the frame
+    int number; ///< from 1
+    double samples, ms, error;
+} glintL_step;
+
 typedef struct glintL_reporter {
     void *context;
     void (*rendering)(void *context, const glintL_run *run, bool begins); ///< called before and after each glint_render
@@ -250,8 +266,8 @@ typedef struct glintL_reporter {
     void (*figure)(void *context, const char *kind, const char *path, int64_t count);
     /// Called while a film is being made and has `done` of `count` frames. May be NULL.
     void (*making)(void *context, const char *path, size_t done, size_t count);
-    /// Called with the samples and the estimated error of a frame before it is rendered with more samples. May be NULL.
-    void (*step)(void *context, double samples, double error);
+    /// Called after each step of a frame that is refined. May be NULL.
+    void (*step)(void *context, const glintL_step *step);
     /// Called with each rendered picture, including its linear beauty pass if the run keeps images. May be NULL.
     void (*image)(void *context, const glintL_run *run, const glintL_work *work);
     /// Called before the script runs in `L`, whose libraries are open. May raise. May be NULL.
@@ -472,6 +488,8 @@ void glintL_work_show(glintL_run *run, const glintL_work *work);
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error);
 /// Reports a frame and passes its files to the writer. False: the run has failed.
 bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
+/// Writes the files of an unfinished picture, and waits for them. False: the run has failed.
+bool glintL_work_leave(glintL_run *run, const glintL_work *work);
 /// Renders a frame for a run that measures. False: the run has failed.
 bool glintL_work_measure(glintL_run *run, glintL_work *work);
 /// Processes a whole frame: finds its files, or renders it `repeat` times, and finishes it. False: the run has failed.
@@ -486,10 +504,12 @@ typedef struct glintL_frame_planner {
     const glintL_render *render; ///< as the script and the command line say
     /// Plans the frame with these options; samples, seed and passes may differ from `render`. NULL: the run has failed.
     glintL_work *(*plan)(void *context, const glintL_render *render);
+    /// Names the files of a planned work. False: they have no names yet, or cannot be replaced later.
+    bool (*name)(void *context, glintL_work *work);
     void *context;
 } glintL_frame_planner;
 
-bool glintL_run_refines(const glintL_run *run); ///< whether the run has --until or --seconds
+bool glintL_run_refines(const glintL_run *run); ///< whether the run has --until, --until-light or --seconds
 #define GLINTL_ESTIMATE_PIXELS 10 ///< with fewer pixels (glint_estimate_pixels), an estimate is not to be trusted
 /// Turns the options of a picture into those of its partner, which glint_estimate_error needs.
 void glintL_render_be_partner(glintL_render *render);
@@ -550,6 +570,7 @@ typedef struct glintL_provenance {
     glint_text text[GLINTL_TEXT_COUNT];
     size_t count;
     char frame[24]; ///< number in the script
+    char key[GLINTL_KEY_SIZE];
     char options[1024]; ///< "name=value" lines: the options of the frame
     char *sweep; ///< owned; "name=value" lines: the axes of glint.sweep, then of --sweep; NULL: none
     char *names; ///< owned; "axis=text" and "axis:value=text" lines of the sweep's sheet, then of the parameters; NULL: none

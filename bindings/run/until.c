@@ -1,13 +1,20 @@
-// --until and --seconds: renders a frame with 2, 4, 8 ... samples a pixel until its error is small enough, or the time
-// is over.
+// --until, --until-light and --seconds: renders a frame with 2, 4, 8 ... samples a pixel until its error is small enough,
+// or the time is over.
 //
 // Each picture is the picture of --samples n, bit for bit. A second picture with another seed and more samples, the
 // partner, tells its error (glint_estimate_error).
+//
+// The files of a step stay until the next step replaces them, so that whatever ends the run leaves the best picture so
+// far. Their key says that they are unfinished, and the next run goes on from there.
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "bindings/run/run.h"
 #include "engine/glint_compare.h"
+#include "engine/glint_files.h"
 
 #define STUCK 0.9 // four times the samples reduce most errors to a half or less
 #define RISE 1.3 // estimates of ordinary pictures fall with each doubling of the samples, or rise by less
@@ -21,9 +28,15 @@ typedef struct ladder {
     double start_ms, step_ms; // step_ms: time of the last picture and its partner
     double errors[3]; // of the last pictures, the newest first; 0: none
     double pixels; // see glint_estimate_pixels
+    int number; // of the last step, from 1
+    bool may_leave; // no finished picture would be lost
+    bool replaces; // the last step has files that the next one can replace
+    glintL_work *left; // the last work whose files were left; only its names and numbers are read. NULL: none
 } ladder;
 
-bool glintL_run_refines(const glintL_run *run) { return run->request.until > 0 || run->request.seconds > 0; }
+static double target(const glintL_request *request) { return fmax(request->until, request->until_light); }
+
+bool glintL_run_refines(const glintL_run *run) { return target(&run->request) > 0 || run->request.seconds > 0; }
 
 void glintL_render_be_partner(glintL_render *render)
 {
@@ -55,6 +68,17 @@ static glintL_work *draw(ladder *l, const glintL_render *render)
     return !work || glintL_work_draw(l->run, work, &error) == GLINT_OK ? work : fail_render(l, work, &error);
 }
 
+// Names the work's files. Returns whether there are any, and all of them can be replaced.
+static bool has_files(const ladder *l, glintL_work *work)
+{
+    if (!l->planner->name(l->planner->context, work) || work->file_count == 0)
+        return false;
+    for (int i = 0; i < work->file_count; i++)
+        if (glintL_name_is_special(work->files[i].path))
+            return false;
+    return true;
+}
+
 // Renders the frame and its partner. NULL: the run has failed.
 static glintL_work *step(ladder *l, double samples)
 {
@@ -65,12 +89,14 @@ static glintL_work *step(ladder *l, double samples)
     glintL_work *work = draw(l, &render);
     if (!work)
         return NULL;
+    l->replaces = has_files(l, work); // planning the partner changes the frame's names
     glintL_render_be_partner(&render);
     snprintf(render.output, sizeof render.output, "partner.pfm"); // without pixel values; no file is written
     glintL_work *partner = draw(l, &render);
-    const bool good = partner && (glint_estimate_error(work->image, partner->image, &work->error, &error) == GLINT_OK ||
+    const glint_tone_desc *tone = l->run->request.until_light > 0 ? NULL : &work->render.desc.tone;
+    const bool good = partner && (glint_estimate_error(work->image, partner->image, tone, &work->error, &error) == GLINT_OK ||
                                   fail_render(l, NULL, &error));
-    l->pixels = good ? glint_estimate_pixels(work->image, partner->image) : 0;
+    l->pixels = good ? glint_estimate_pixels(work->image, partner->image, tone) : 0;
     glintL_work_destroy(partner);
     l->step_ms = glintL_now_ms() - start;
     if (!good) {
@@ -80,8 +106,88 @@ static glintL_work *step(ladder *l, double samples)
     l->errors[2] = l->errors[1];
     l->errors[1] = l->errors[0];
     l->errors[0] = work->error;
+    l->number++;
+    if (l->run->reporter.step)
+        l->run->reporter.step(l->run->reporter.context,
+                              &(glintL_step) { l->index, l->number, samples, l->step_ms, work->error });
     return work;
 }
+
+// ---- Unfinished pictures ----
+
+static void mark_unfinished(const ladder *l, glintL_work *work)
+{
+    snprintf(work->unfinished, sizeof work->unfinished, "%.0f samples, error %.9g", work->render.desc.samples, l->errors[0]);
+}
+
+// Returns whether a work's file is the unfinished picture of its samples.
+static bool is_left(const glintL_work *work)
+{
+    char key[GLINTL_KEY_SIZE];
+    GLINTL_SPELL_KEY(key, work->files[0].key, true);
+    return *work->files[0].key && glint_file_has_key(work->files[0].path, key);
+}
+
+// Leaves the work's files, and destroys its picture. False: the run has failed.
+static bool leave(ladder *l, glintL_work *work)
+{
+    bool good = true;
+    if (l->may_leave && l->replaces) {
+        mark_unfinished(l, work);
+        good = glintL_work_leave(l->run, work);
+    }
+    if (!good || !*work->unfinished || (l->run->interrupted && !is_left(work))) { // a signal may have stopped the writer
+        glintL_work_destroy(work);
+        return good;
+    }
+    glintL_work_destroy(l->left);
+    glint_image_release(work->image);
+    work->image = NULL;
+    l->left = work;
+    return true;
+}
+
+// Returns the samples of the unfinished picture in a work's file, and its error; 0: there is none.
+static double samples_left(const glintL_work *work, double *stated)
+{
+    glint_picture *picture = NULL;
+    if (!*work->files[0].key || glint_picture_read(work->files[0].path, false, &picture, NULL))
+        return 0;
+    const char *text = glint_picture_text(picture, "glint:unfinished"), *error = text ? strstr(text, "error ") : NULL;
+    const double samples = text ? strtod(text, NULL) : 0;
+    *stated = error ? strtod(error + strlen("error "), NULL) : 0;
+    glint_picture_destroy(picture);
+    return samples >= 2 && samples <= GLINTL_SAMPLES_MAX && samples == floor(samples) ? samples : 0;
+}
+
+// Returns the samples of the first step: twice those of an unfinished picture of this frame, or 2. 0: the run has failed.
+static double first_samples(ladder *l)
+{
+    glintL_render render = *l->planner->render;
+    double samples = 2, found = 0, stated = 0;
+    for (int k = 0; k < 2 && samples > 0; k++) {
+        render.desc.samples = samples;
+        glintL_work *work = l->planner->plan(l->planner->context, &render);
+        if (!work)
+            return 0;
+        if (k == 0 && has_files(l, work)) {
+            found = samples_left(work, &stated);
+            l->may_leave = found > 0 || access(work->files[0].path, F_OK) != 0;
+            found = l->run->request.starts_anew ? 0 : found;
+        } else if (k > 0 && has_files(l, work) && is_left(work) && 2 * samples <= l->most) {
+            for (double n = 2; n <= samples; n *= 2)
+                l->number++;
+            l->errors[0] = stated;
+            glintL_work_destroy(work);
+            return 2 * samples;
+        }
+        glintL_work_destroy(work);
+        samples = found;
+    }
+    return 2;
+}
+
+// ---- Ends ----
 
 // Returns whether the next step, which takes as long as its share of samples says, ends in time.
 static bool has_time(const ladder *l, double factor)
@@ -118,22 +224,25 @@ static void warn_of_doubt(const ladder *l)
                     "missing from it", l->index, l->errors[0], held, moved);
 }
 
-static void warn_of_rest(const ladder *l, const glintL_work *work)
+static void finish(const ladder *l, glintL_work *work)
 {
     const glintL_request *request = &l->run->request;
-    const double samples = work->render.desc.samples;
-    if (request->until == 0 || work->error <= request->until)
+    const double samples = work->render.desc.samples, until = target(request);
+    const char *name = request->until_light > 0 ? "until-light" : "until";
+    if (until == 0 || work->error <= until)
         return;
     if (is_stuck(l))
-        glintL_run_warn(l->run, "frame %" PRId64 ": --until: the error is %.3g, above %g, after %.0f samples, and more samples do not "
-                        "reduce it; use a smaller --adaptive, or more samples of lights", l->index, work->error, request->until, samples);
+        glintL_run_warn(l->run, "frame %" PRId64 ": --%s: the error is %.3g, above %g, after %.0f samples, and more samples do not "
+                        "reduce it; use a smaller --adaptive, or more samples of lights", l->index, name, work->error, until, samples);
     else if (samples == l->most)
-        glintL_run_warn(l->run, "frame %" PRId64 ": --until: the error is %.3g, above %g, after %.0f samples, the most%s",
-                        l->index, work->error, request->until, samples,
+        glintL_run_warn(l->run, "frame %" PRId64 ": --%s: the error is %.3g, above %g, after %.0f samples, the most%s",
+                        l->index, name, work->error, until, samples,
                         l->most < GLINTL_SAMPLES_MAX ? "; use more --samples" : "");
     else
-        glintL_run_warn(l->run, "frame %" PRId64 ": --until: the error is %.3g, above %g, after %.0f samples, the most in %g seconds",
-                        l->index, work->error, request->until, samples, request->seconds);
+        glintL_run_warn(l->run, "frame %" PRId64 ": --%s: the error is %.3g, above %g, after %.0f samples, the most in %g seconds",
+                        l->index, name, work->error, until, samples, request->seconds);
+    if (!is_stuck(l) && samples < l->most)
+        mark_unfinished(l, work);
 }
 
 glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner, int64_t index)
@@ -141,24 +250,27 @@ glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner,
     ladder l = { .run = run, .planner = planner, .index = index, .most = GLINTL_SAMPLES_MAX, .start_ms = glintL_now_ms() };
     if (run->request.render_text[glintL_render_find("samples")])
         l.most = planner->render->desc.samples;
-    double samples = 2;
-    glintL_work *work = step(&l, samples);
-    while (work && samples < l.most && work->error > run->request.until) {
+    double samples = fmin(first_samples(&l), l.most);
+    glintL_work *work = samples > 0 ? step(&l, samples) : NULL;
+    while (work && samples < l.most && work->error > target(&run->request)) {
         const double more = fmin(2 * samples, l.most);
-        if (run->reporter.step)
-            run->reporter.step(run->reporter.context, samples, work->error);
         if (is_stuck(&l) || !has_time(&l, more / samples))
             break;
+        work = leave(&l, work) ? step(&l, more) : NULL;
         samples = more;
-        glintL_work_destroy(work);
-        work = step(&l, samples);
     }
+    if (!work && l.left)
+        glintL_run_warn(run, "frame %" PRId64 ": %s has the picture of %.0f samples, error %.3g%s", index, l.left->files[0].path,
+                        l.left->render.desc.samples, l.left->error, *l.left->files[0].key ? "; the same command goes on from there" : "");
+    if (work)
+        work->follows_step = l.left != NULL;
+    glintL_work_destroy(l.left);
     glint_error error;
     if (!work)
         return NULL;
     if (glintL_work_warn(run, work, &error))
         return fail_render(&l, work, &error);
-    warn_of_rest(&l, work);
+    finish(&l, work);
     warn_of_doubt(&l);
     glintL_work_show(run, work);
     return work;

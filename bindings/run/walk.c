@@ -357,12 +357,19 @@ static glintL_work *plan_again(void *context, const glintL_render *render)
     return glintL_walk_plan(frame->walk, frame->n, frame->number);
 }
 
+static bool name_again(void *context, glintL_work *work)
+{
+    const planned *frame = context;
+    glint_error error;
+    return !frame->walk->naming.film && glintL_work_name(work, &frame->walk->naming, &error) == GLINT_OK;
+}
+
 // Renders frame n with the samples that it needs. Returns it named; NULL: the run has failed.
 static glintL_work *refine(glintL_walk *walk, int64_t n, int64_t number)
 {
     planned frame = { walk, n, number };
     const glintL_render render = walk->render;
-    const glintL_frame_planner planner = { &render, plan_again, &frame };
+    const glintL_frame_planner planner = { &render, plan_again, name_again, &frame };
     glintL_work *work = glintL_refine(walk->run, &planner, number);
     walk->render = render;
     return work ? name_files(walk, work) : NULL;

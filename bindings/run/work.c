@@ -284,9 +284,35 @@ static glint_status submit(glintL_run *run, const glintL_work *work, const glint
     return status;
 }
 
-bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
+// Passes a work's files to the writer. record: of the work, for the results.
+static void submit_files(glintL_run *run, const glintL_work *work, glintL_record *record)
 {
     glint_error error;
+    record->files_left = work->file_count;
+    for (int i = 0; i < work->file_count; i++) {
+        glint_status status = submit(run, work, &work->files[i], record, &error);
+        if (status) {
+            record->files_left -= work->file_count - i;
+            record->failed = true;
+            glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
+            break;
+        }
+        run->files_pending++;
+    }
+}
+
+bool glintL_work_leave(glintL_run *run, const glintL_work *work)
+{
+    glintL_record *record = glintL_run_add(run, work);
+    if (!record)
+        return false;
+    record->is_step = true;
+    submit_files(run, work, record);
+    return glintL_run_collect(run, true);
+}
+
+bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
+{
     if (kept)
         memset(&work->stats, 0, sizeof work->stats);
     if (!glintL_places_add(run, work))
@@ -297,17 +323,8 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
     record->kept = kept;
     record->is_last = true;
     record->repeat = run->request.repeat > 1 ? run->request.repeat : 0;
-    record->files_left = kept ? 0 : work->file_count;
-    for (int i = 0; i < work->file_count && !kept; i++) {
-        glint_status status = submit(run, work, &work->files[i], record, &error);
-        if (status) {
-            record->files_left -= work->file_count - i;
-            record->failed = true;
-            glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
-            break;
-        }
-        run->files_pending++;
-    }
+    if (!kept)
+        submit_files(run, work, record);
     return glintL_run_collect(run, false);
 }
 

@@ -140,11 +140,11 @@ static void draw(watcher *w)
 static void show_error(watcher *w, const glint_image *partner)
 {
     glint_error error;
-    if (glint_estimate_error(w->image, partner, &w->error, &error)) {
+    if (glint_estimate_error(w->image, partner, NULL, &w->error, &error)) {
         glintL_run_fail(w->run, GLINTL_EXIT_FAILED, w->frame, "%s", error.message);
         return;
     }
-    w->is_doubtful = glint_estimate_pixels(w->image, partner) < GLINTL_ESTIMATE_PIXELS;
+    w->is_doubtful = glint_estimate_pixels(w->image, partner, NULL) < GLINTL_ESTIMATE_PIXELS;
     publish(w, NULL);
     if (w->output->json) {
         fprintf(w->output->data, "{\"event\":\"estimate\",\"index\":%" PRId64 ",\"samples\":%.0f,\"error\":%.6g,\"trusted\":%s}",

@@ -160,9 +160,9 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     glint_error error;
     (void)context;
     if (run->renders_partner) {
-        if (glint_estimate_error(job.image, work->image, &job.error, &error))
+        if (glint_estimate_error(job.image, work->image, NULL, &job.error, &error))
             glintL_run_fail(job.run, GLINTL_EXIT_FAILED, work->index, "%s", error.message);
-        job.is_doubtful = glint_estimate_pixels(job.image, work->image) < GLINTL_ESTIMATE_PIXELS;
+        job.is_doubtful = glint_estimate_pixels(job.image, work->image, NULL) < GLINTL_ESTIMATE_PIXELS;
         return;
     }
     glint_image_release(job.image);

@@ -1,4 +1,4 @@
--- How often `--until` and the advice of `glint cost` are right, against brute force: lua5.4 calibrate.lua SCENES SEEDS
+-- How often `--until-light` and the advice of `glint cost` are right, against brute force: lua5.4 calibrate.lua SCENES SEEDS
 -- SIZE. Prints a row for each scene. A test that loads it gets the function, which returns the counts.
 local build = os.getenv "BUILD" or "build"
 local glint = os.getenv "GLINT" or build .. "/glint"
@@ -50,11 +50,11 @@ local function brute(scene, size, option, truth)
   return sum ^ 0.5
 end
 
--- Compares the error that --until states with the true one.
+-- Compares the error that --until-light states with the true one.
 local function check_until(scene, size, seed, limit, truth, found)
-  local event = run(scene, ("--size %s --until %g --samples 256 --seed %d --json -o none"):format(size, limit, seed))
+  local event = run(scene, ("--size %s --until-light %g --samples 256 --seed %d --json -o none"):format(size, limit, seed))
   local samples, stated = event:match '"samples":(%d+),"error":([%d.e-]+)'
-  assert(stated, "glint --until has failed")
+  assert(stated, "glint --until-light has failed")
   if tonumber(stated) == 0 then return end
   local error = square(render(scene, size, ("--samples %s --seed %d"):format(samples, seed)), truth) ^ 0.5
   found.quotients[#found.quotients + 1] = tonumber(stated) / error
@@ -105,7 +105,7 @@ local function calibrate(scenes, seeds, size)
 end
 
 if arg and arg[0] and arg[0]:find "calibrate.lua$" and not arg[0]:find "test_" then
-  print "| scene | --until held | median of stated / true | advice right | not decided |\n| --- | --- | --- | --- | --- |"
+  print "| scene | --until-light held | median of stated / true | advice right | not decided |\n| --- | --- | --- | --- | --- |"
   calibrate(tonumber(arg[1]), tonumber(arg[2]), arg[3])
 end
 return calibrate

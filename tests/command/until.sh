@@ -34,6 +34,8 @@ number() { sed -n "s/.*\"event\":\"frame\".*\"$1\":\([0-9.e-]*\).*/\1/p" out | t
 for until in 0.02 0.006; do
     exits 0 "until $until" scene.lua -f 1-2 --until $until --json -o 'a_%d.png' --passes depth,diffuse
     n=$(number samples)
+    ! grep -q "another run" err
+    result $? "until $until: no warning about its own steps"
     check "until $until: the error is below it" awk -v e="$(number error)" "BEGIN { exit !(e > 0 && e <= $until) }"
     exits 0 "samples $n" scene.lua -f 2 --samples "$n" -o 'b_%d.png' --passes depth,diffuse -q
     for pass in '' .depth .diffuse; do check "until $until: samples $n$pass" cmp a_2$pass.png b_2$pass.png; done
@@ -79,18 +81,24 @@ check "a picture without noise has the least samples" test "$(number samples)" -
 
 cat >rmse.lua <<'E2' # the root of the mean squared difference between a file and the mean of other files
 local glint = require "glint"
-local function read(path)
+local seen = os.getenv "SEEN" -- as people see the picture: Reinhard's curve at half the light, in sRGB
+local function code(light)
+  local x = light / 2 / (1 + light / 2)
+  return x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055
+end
+local function read(path, as_is)
   local floats, values = glint.read_image(path), {}
   for y = 0, floats.height - 1 do for x = 0, floats.width - 1 do
-    for _, v in ipairs { floats:pixel(x, y) } do values[#values + 1] = v end
+    for _, v in ipairs { floats:pixel(x, y) } do values[#values + 1] = (seen and not as_is) and code(v) or v end
   end end
   return values
 end
 local picture, sum, references = read(arg[1]), 0, {}
-for i = 2, #arg do references[i - 1] = read(arg[i]) end
+for i = 2, #arg do references[i - 1] = read(arg[i], true) end
 for k = 1, #picture do
   local mean = 0
   for _, reference in ipairs(references) do mean = mean + reference[k] / #references end
+  if seen then mean = code(mean) end
   sum = sum + (picture[k] - mean) ^ 2
 end
 print(("%.7f"):format((sum / #picture) ^ 0.5))
@@ -102,14 +110,24 @@ for what in soft indirect checks lens sharp; do
         exits 0 "$what: reference" scene.lua -f 2 --set what=$what --samples 512 --seed $((seed * 1000)) -q -o "ref_${seed}_%d.pfm"
     done
     for most in 2 4 8 16 32; do
-        exits 0 "$what $most" scene.lua -f 2 --set what=$what --until 1e-9 --samples $most --seed $((most / 8)) --json -o 'p_%d.pfm'
-        says "$what $most" "frame 2: --until: the error is [0-9.]*, above 1e-09, after $most samples, the most; use more --samples"
+        exits 0 "$what $most" scene.lua -f 2 --set what=$what --until-light 1e-9 --samples $most --seed $((most / 8)) --json -o 'p_%d.pfm'
+        says "$what $most" "frame 2: --until-light: the error is [0-9.]*, above 1e-09, after $most samples, the most; use more --samples"
         stated=$(number error)
         true=$("$glint" rmse.lua -q -- p_2.pfm ref_{5,6,7}_2.pfm)
         check "$what, $most samples: the error is $true, glint says $stated" \
             awk -v s="$stated" -v t="$true" 'BEGIN { exit !(t < 1.25 * s) }'
         quotients+=("$(awk -v s="$stated" -v t="$true" 'BEGIN { printf "%.4f\n", s / t }')")
     done
+done
+for seed in 5 6 7; do
+    exits 0 "seen: reference" scene.lua -f 2 --set what=indirect --samples 512 --seed $((seed * 1000)) -q -o "ref_${seed}_%d.pfm"
+done
+for most in 4 16; do
+    exits 0 "seen $most" scene.lua -f 2 --set what=indirect --until 1e-9 --samples $most --tone reinhard --exposure -1 --json -o 'p_%d.pfm'
+    stated=$(number error)
+    true=$(SEEN=1 "$glint" rmse.lua -q -- p_2.pfm ref_{5,6,7}_2.pfm)
+    check "$most samples: as seen, the error is $true, glint says $stated" \
+        awk -v s="$stated" -v t="$true" 'BEGIN { exit !(t < 1.25 * s && t > 0.7 * s) }'
 done
 median=$(printf '%s\n' "${quotients[@]}" | sort -n | sed -n 13p)
 check "the median of stated and true error is $median" awk -v q="$median" 'BEGIN { exit !(q > 0.8 && q < 1.2) }'
@@ -126,7 +144,7 @@ return glint.animation { scene = glint.scene { camera = glint.camera { eye = { 0
   frames = 1, width = 60, height = 40, frame = function() end }
 E2
 for seed in 1 2 3; do
-    exits 0 "rare light, seed $seed" rare.lua --until 1e-9 --samples 4 --seed $seed -q -o rare.pfm
+    exits 0 "rare light, seed $seed" rare.lua --until-light 1e-9 --samples 4 --seed $seed -q -o rare.pfm
     says "rare light, seed $seed" 'frame 1: the estimated error, [0-9.]*, is not to be trusted: most of it is in [0-9] pixel.*, and the last doubling of the samples moved it from [0-9.]*; rare bright paths may be missing'
 done
 
@@ -148,16 +166,64 @@ says "the line of a frame" '^frame 2: both_2.png, .* ms, [0-9]* samples, error 0
 exits 0 "noise in pixels with one sample" scene.lua -f 2 --until 1e-9 --adaptive 3 --json -o 'stuck_%d.png'
 says "noise in pixels with one sample" 'after 16 samples, and more samples do not reduce it; use a smaller --adaptive'
 
-# SIGINT ends the frame, and no file of it is left.
-rm -f int_*
-"$glint" scene.lua -f 2 --size 600x400 --until 1e-9 -o 'int_%d.png' -q 2>err &
+# ---- Unfinished pictures ----
+
+# stopped NAME SIGNAL: runs the frame until it has left a picture, and stops it.
+stopped() {
+    rm -f "$1"_*
+    "$glint" scene.lua -f 2 --set what=indirect --size 160x100 --until 1e-9 -o "$1_%d.$3" 2>err &
+    pid=$!
+    for _ in $(seq 600); do
+        grep -q 'step 3' err && break
+        sleep 0.1
+    done
+    kill "-$2" $pid
+    wait $pid 2>/dev/null
+}
+
+for signal in TERM INT KILL; do
+    stopped int $signal png
+    code=$?
+    check "$signal: exit $code" test "$code" -eq $((128 + $(kill -l $signal)))
+    [ $signal = KILL ] || says "$signal" 'warning: frame 2: int_2.png has the picture of [0-9]* samples, error 0.[0-9]*; the same command goes on from there'
+    check "$signal: the key says that the picture is not finished" grep -aq 'glint:key.[0-9a-f]\{32\}-unfinished' int_2.png
+    had=$(strings int_2.png | sed -n 's/^samples=//p')
+    exits 0 "$signal: the samples of the file" scene.lua -f 2 --set what=indirect --size 160x100 --samples "$had" -q -o 'plain_%d.png'
+    ! cmp -s plain_2.png int_2.png
+    result $? "$signal: the files differ by their text"
+    exits 0 "$signal: the pixels" compare plain_2.png int_2.png
+    cp int_2.png left_2.png
+    exits 0 "$signal: goes on" scene.lua -f 2 --set what=indirect --size 160x100 --until 1e-9 --samples $((2 * had)) --json -o 'int_%d.png'
+    check "$signal: goes on with twice the samples" test "$(grep -c '"event":"step"' out)" -eq 1 -a "$(number samples)" -eq $((2 * had))
+    exits 0 "$signal: as if it had not been stopped" scene.lua -f 2 --set what=indirect --size 160x100 --samples $((2 * had)) -q -o 'plain_%d.png'
+    check "$signal: the same bytes" cmp plain_2.png int_2.png
+done
+cp left_2.png int_2.png
+exits 0 "another scene" scene.lua -f 2 --set what=soft --size 160x100 --until 0.05 --json -o 'int_%d.png'
+check "another scene begins anew" test "$(number samples)" -eq 2
+cp left_2.png int_2.png
+exits 0 "--force" scene.lua -f 2 --set what=indirect --size 160x100 --until 0.9 --force --json -o 'int_%d.png'
+check "--force begins anew" test "$(number samples)" -eq 2
+exits 0 "a finished picture" scene.lua -f 2 --set what=indirect --size 160x100 --samples 8 -q -o 'done_%d.png'
+cp done_2.png before.png
+"$glint" scene.lua -f 2 --set what=indirect --size 160x100 --until 1e-9 -o 'done_%d.png' 2>err &
 pid=$!
-sleep 0.5
-kill -INT $pid
-wait $pid
-[ $? -eq 130 ]
-result $? "SIGINT: exit 130"
-check "SIGINT leaves no picture" test -z "$(find . -name 'int_*' -o -name '.*int_*')"
+sleep 1
+kill -TERM $pid
+wait $pid 2>/dev/null
+check "a finished picture is not replaced by an unfinished one" cmp done_2.png before.png
+stopped lin TERM pfm
+says "a format without a key" 'lin_2.pfm has the picture of [0-9]* samples, error 0.[0-9]*$'
+check "it has the picture" test -s lin_2.pfm
+exits 0 "a limit of time" scene.lua -f 2 --set what=indirect --until 1e-9 --seconds 0.05 --json -o 'limit_%d.png'
+had=$(number samples)
+exits 0 "a limit of time" scene.lua -f 2 --set what=indirect --until 1e-9 --seconds 0.05 --json -o 'limit_%d.png'
+check "the next run goes on" test "$(number samples)" -gt "$had"
+
+exits 0 "plain lines" scene.lua -f 2 --until 0.02 -o 'a_%d.png'
+says "plain lines" '^frame 2: step 1, 2 samples, [0-9.]* s, error 0.[0-9]*$'
+exits 0 "quiet" scene.lua -f 2 --until 0.02 -o 'a_%d.png' -q
+check "quiet" test ! -s err
 
 # ---- Refusals ----
 
@@ -169,9 +235,13 @@ exits 2 "colours" scene.lua --until 0.1 --colormap viridis:auto
 says "colours" '--until: not with --colormap auto.*expected NAME:LOW:HIGH'
 exits 2 "one sample" scene.lua --until 0.1 --samples 1
 says "one sample" "--samples: expected at least 2 with --until, got '1'"
+exits 2 "two errors" scene.lua --until 0.1 --until-light 0.1
+says "two errors" '--until-light: not with --until; expected one of the two'
 for value in 0 -1 x; do
     exits 2 "until $value" scene.lua --until $value
-    says "until $value" "--until: error of linear light > 0 expected, got '$value'"
+    says "until $value" "--until: error, in fractions of white, > 0 expected, got '$value'"
+    exits 2 "until-light $value" scene.lua --until-light $value
+    says "until-light $value" "--until-light: error of linear light > 0 expected, got '$value'"
     exits 2 "seconds $value" scene.lua --seconds $value
 done
 exits 2 "another command" explain scene.lua --until 0.1

@@ -331,8 +331,8 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_reference_measure(NULL, NULL, 0, NULL, NULL));
     INVALID(glint_reference_difference(NULL, NULL, 0, NULL, NULL));
     NOTHING(glint_partner_seed(NULL));
-    INVALID(glint_estimate_error(NULL, NULL, NULL, NULL));
-    NOTHING(glint_estimate_pixels(NULL, NULL));
+    INVALID(glint_estimate_error(NULL, NULL, NULL, NULL, NULL));
+    NOTHING(glint_estimate_pixels(NULL, NULL, NULL));
     INVALID(glint_lights_read(NULL, NULL, NULL));
     INVALID(glint_image_relight(NULL, NULL, NULL, NULL));
     INVALID(glint_draft_create(NULL, NULL, NULL));

@@ -228,7 +228,7 @@ async function stepsOf(job, options) {
   return found
 }
 
-await test("steps are pictures of --samples n, with the errors of --until", async () => {
+await test("steps are pictures of --samples n, with the errors of --until-light", async () => {
   const job = await glint.open(soft), found = await stepsOf(job)
   assert.deepEqual(found.map(image => image.samples), [1, 2, 4, 6])
   for (const { samples, ownSamples, rgba, error } of found) {
@@ -244,9 +244,9 @@ await test("steps are pictures of --samples n, with the errors of --until", asyn
   job.close()
 })
 
-// The error that --until estimates for a picture of soft.lua.
+// The error that --until-light estimates for a picture of soft.lua.
 function errorOf(samples) {
-  const lines = execFileSync(GLINT, ["tests/web/soft.lua", "--samples", String(samples), "--until", "1e-9", "-o", "none", "--json"],
+  const lines = execFileSync(GLINT, ["tests/web/soft.lua", "--samples", String(samples), "--until-light", "1e-9", "-o", "none", "--json"],
     { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })
   return Number(/"error":([0-9.e-]+)/.exec(lines)[1])
 }
