@@ -592,12 +592,9 @@ typedef struct glint_mesh_desc {
     bool has_shading; ///< false: phong if there are normals, otherwise faceted
     /// Phong and gouraud without normals: the normals of the faces around a vertex are averaged, weighted by area
     glint_shading shading;
-    /// 0 (default) .. 1: share of the distance by which points of a phong mesh move outwards, from their flat faces to the
-    /// curved surface that the normals describe, before light and shadow are computed. 1 removes the steps in the shadow
-    /// at the terminator. With P the point, v and n a corner and its normal on the viewer's side, the distance is the mean
-    /// over the corners of -min(0, (P - v) . n) n with P's weights (J. Hanika, "Hacking the Shadow Terminator", Ray
-    /// Tracing Gems II, 2021). A frame refuses
-    /// such a mesh if a material of it transmits light
+    /// 0 (default) .. 1: share of the distance by which points P of a phong mesh move outwards, before light and shadow are
+    /// computed: the mean over its corners v of -min(0, (P - v) . n) n, weighted as at P, with the normals n on the viewer's
+    /// side (J. Hanika, Ray Tracing Gems II, 2021). Refused by frames if a material of the mesh transmits light
     double terminator;
     glint_material *material; ///< material of all faces, retained; NULL: `materials`, the file's materials, or one
         ///< material with default fields
@@ -736,9 +733,7 @@ typedef struct glint_tone_desc {
     glint_rounding rounding; ///< default nearest: floor(x M + 0.5); truncate: floor(x M)
     int bits; ///< 8 (default) or 16: M = 255 or 65535
     double exposure; ///< stops: light is multiplied by 2^exposure first, in float; default 0
-    /// With 8 bits: floor(x M + t) instead of `rounding`; no effect with 16 bits. The threshold t, between 0 and 1, comes from an ordered matrix
-    /// of 8 x 8 pixels (B. E. Bayer, ICC 1973) at the pixel's position in the whole frame. The mean of 8 x 8 pixels of
-    /// one colour is its x M within 0.01, and whole x M are unchanged. Default false
+    /// With 8 bits: floor(x M + t) instead of `rounding`; t by B. E. Bayer's matrix (ICC 1973) of 8 x 8 pixels of the frame
     bool dither;
 } glint_tone_desc;
 
@@ -770,11 +765,8 @@ typedef struct glint_render_desc {
     /// both and its mirror + transmission is above 1, because rays then double at each surface. From the 17th surface
     /// of a chain on, one of the two rays, chosen at random, represents both
     double max_depth;
-    /// 0 (default): no limit. Above 0, at most 1e9: the largest light that one random path (indirect light, rough reflection and
-    /// refraction) may bring to its pixel from one of its later surfaces. The unit is that of the picture: the light that
-    /// the pixel would show if it had only this path. Brighter light is scaled to this value in its largest channel, so
-    /// that it keeps its colour. Light from lamps at the first surface, and the background that rays from there show, have
-    /// no limit. This removes bright dots, together with a part of the light
+    /// 0 (default): no limit. Above 0, at most 1e9: the most light, in its largest channel, that a random path (indirect
+    /// light, rough surfaces) brings from a surface after its first ray, as if the pixel had no other path
     double clamp;
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; stored in the image as linear float planes. Beauty may be left
         ///< out. With `outline`, the passes that it needs (depth, normal and object_id) are stored, too
