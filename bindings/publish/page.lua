@@ -127,8 +127,8 @@ local function figure_of(page)
   local files, same = files_of(page)
   return fill(FIGURE, {
     TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height, ATTRIBUTES = attributes_of(page),
-    POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), FONT = page.font and FONT:format(the.base64(page.font)) or "",
-    ENGINE = page.engine,
+    POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), ENGINE = page.engine,
+    FONT = page.font and FONT:format(the.base64(page.font)) or "",
     JOB = embedded(
       { name = page.script, text = page.source, files = files, same = same, values = values_of(page.params) },
       the.params(page.params)),
