@@ -64,8 +64,10 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
                             const glintL_file *file)
 {
     memset(out, 0, sizeof *out);
-    if (!join_sweeps(out, run, work) || !join_names(out, run, work))
+    if (!join_sweeps(out, run, work) || !join_names(out, run, work)) {
+        glintL_provenance_drop(out);
         return false;
+    }
     snprintf(out->frame, sizeof out->frame, "%" PRId64, work->index - run->point_first);
     list_options(&work->render, out->options, sizeof out->options);
     add(out, "Software", "glint " GLINT_VERSION);
