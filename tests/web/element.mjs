@@ -4,7 +4,7 @@
 // The arguments are those of pages.mjs.
 import { execFileSync } from "node:child_process"
 import { createServer } from "node:http"
-import { createReadStream, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs"
+import { cpSync, createReadStream, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs"
 import { dirname, extname, join, normalize } from "node:path"
 import { fileURLToPath } from "node:url"
 import { chromium } from "playwright-core"
@@ -389,6 +389,21 @@ async function disk() {
   await close(page, "course")
 }
 
+// The npm package in a bundler: the element and the module come from "glint-render".
+async function bundled() {
+  const site = join(work, "site"), own = join(site, "node_modules/glint-render")
+  cpSync(web, own, { recursive: true, filter: path => !/examples|course/.test(path) })
+  writeFileSync(join(site, "app.js"), 'import "glint-render/figure"\nimport { load } from "glint-render"\ndocument.title = typeof load\n')
+  execFileSync(join(dirname(fileURLToPath(import.meta.url)), "node_modules/.bin/esbuild"), ["app.js", "--bundle", "--format=esm", "--external:node:*", "--outfile=bundle.js", "--log-level=error"], { cwd: site })
+  for (const name of ["glint.wasm", "worker.mjs", "glint.ttf"]) cpSync(join(own, name), join(site, name))
+  cpSync(join(work, "lamp.lua"), join(site, "lamp.lua"))
+  writeFileSync(join(site, "index.html"), '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><script type="module" src="bundle.js"></script><glint-figure src="lamp.lua" shininess="5"></glint-figure>')
+  const page = await open("site/index.html")
+  await ready(figureOf(page))
+  check(await same(page, figureOf(page), "--set", "shininess=5") && await page.title() === "function", "bundled: the picture of the package's element")
+  await close(page, "bundled")
+}
+
 // The playground has the same hands.
 async function playground() {
   const page = await open("index.html#src=lamp.lua")
@@ -415,7 +430,7 @@ async function playground() {
 }
 
 const only = process.env.T ?? ""
-for (const test of [controls, attributes, errors, hands, phone, published, recipe, disk, playground]) {
+for (const test of [controls, attributes, errors, hands, phone, published, recipe, bundled, disk, playground]) {
   if (!test.name.includes(only)) continue
   try {
     await test()
