@@ -213,7 +213,11 @@ await test("layers: the command's picture without overlays, and the overlays for
   const { GLINT_FONT, ...environment } = process.env
   execFileSync(GLINT, ["tests/web/vectors.lua", "--size", "320x200", "--quiet", "--force", "-o", `${OUT}/vectors.png`], { env: environment })
   assert(sameBits(image.rgba, decode(fs.readFileSync(`${OUT}/vectors.png`)).rgba), "the command's letters")
-  assert.match((await lettered.render(page(390, 244, 12))).marks, /font-family="DejaVu Sans, /)
+  const { marks } = await lettered.render(page(390, 244, 12))
+  assert.match(marks, /font-family="DejaVu Sans, /)
+  for (const size of numbers(marks, /font-size="([\d.]+)"/g)) assert(size >= 12, `letters of ${size} pixels`)
+  const scripts = numbers((await lettered.render(page(640, 400, 0))).marks, /font-size="([\d.]+)"/g)
+  assert(scripts.includes(16) && scripts.includes(11.2), `sizes ${scripts}`)
   lettered.close()
   await assert.rejects(job.render(page(0, 10, 12)), /page.width: expected 1 \.\. 65535, got 0/)
   job.close()

@@ -43,8 +43,8 @@ const quiet = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-ru
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: quiet })
 const LIMIT_MS = 60000
 
-async function open(address, viewport = { width: 1200, height: 800 }) {
-  const context = await browser.newContext({ viewport })
+async function open(address, viewport = { width: 1200, height: 800 }, deviceScaleFactor = 1) {
+  const context = await browser.newContext({ viewport, deviceScaleFactor })
   const page = await context.newPage()
   page.setDefaultTimeout(LIMIT_MS)
   page.messages = []
@@ -101,11 +101,11 @@ function native(script, ...options) {
 }
 
 // Makes a copy of a script without its overlays, which the pages draw in a layer of their own.
-function bare(script) {
+function bare(script, folder = scripts) {
   const kinds = ["label", "colorbar", "axes", "arrow", "line", "arc", "polyline", "lobe", "path", "frustum", "chart"]
   const none = kinds.map(kind => `glint.${kind} = function() return glint.group {} end`).join(" ")
-  const path = join(work, script.replaceAll("/", "_"))
-  writeFileSync(path, `do local glint = require "glint" ${none} end\n${readFileSync(join(scripts, script), "utf8")}`)
+  const path = join(work, `bare_${script.replaceAll("/", "_")}`)
+  writeFileSync(path, `do local glint = require "glint" ${none} end\n${readFileSync(join(folder, script), "utf8")}`)
   return path
 }
 
@@ -392,7 +392,73 @@ function codesOf(page, path) {
   }, readFileSync(path).toString("base64"))
 }
 
-for (const test of [playground, sharing, figure, course, published, live, steps, phone]) {
+// ---- A hand on a slider ----
+
+// Figures in a page of their own: what a reader may see while a control moves and when it rests.
+const FIGURES = {
+  "vectors.lua": ["shininess", readFileSync(join(scripts, "../tests/web/vectors.lua"), "utf8")],
+  "soft.lua": ["height", readFileSync(join(scripts, "../tests/web/soft.lua"), "utf8").replace("samples = 6, f", "samples = 1, f")],
+  "sweep.lua": ["height", SWEEP],
+  "gold.lua": ["roughness", `local glint = require "glint"
+local P = glint.params { roughness = { 0.3, min = 0.05, max = 0.9 } }
+local gold = glint.material { model = "cook_torrance", f0 = { 1, 0.77, 0.34 }, diffuse = 0, roughness = P.roughness }
+return glint.animation { frames = 1, width = 640, height = 400, scene = glint.scene {
+  camera = glint.camera { eye = { 0, 1, 8 }, at = { 0, 0, 0 } }, background = { 0.3, 0.4, 0.6 }, ambient = 0.1,
+  glint.point_light { position = { 5, 8, 5 } }, glint.sphere { center = { 0, 0, 0 }, radius = 2, material = gold },
+  glint.label { text = [[$\\alpha$ of GGX]], at = { 0.5, 0 } } } }`],
+}
+
+// Moves the slider of a figure through 40 steps with the mouse. Returns the pictures shown before it rests.
+async function dragged(page, one, param) {
+  await one.evaluate(figure => {
+    figure.found = []
+    figure.addEventListener("glint-render", ({ detail: { image, coarse, ms } }) => {
+      const letters = [...figure.shadowRoot.querySelectorAll(".over text")].map(text => parseFloat(getComputedStyle(text).fontSize))
+      figure.found.push({ width: image.width, height: image.height, samples: image.samples, ownSamples: image.ownSamples, casts: image.casts, coarse, ms, letters })
+    })
+  })
+  const slider = one.locator(`input[type=range][data-name=${param}], input[type=range]:not(.frames)`).first()
+  await slider.scrollIntoViewIfNeeded()
+  const box = await slider.boundingBox(), y = box.y + box.height / 2
+  await page.mouse.move(box.x + 9, y)
+  await page.mouse.down()
+  for (let i = 0; i <= 40; i++) {
+    await page.mouse.move(box.x + 9 + (box.width - 18) * i / 40, y)
+    await page.waitForTimeout(20)
+    if (i === 30) await page.screenshot({ path: join(work, `drag-${param}-${page.viewportSize().width}.png`) })
+  }
+  await page.mouse.up()
+  await page.waitForFunction(figure => figure.found.length > 0 && !figure.found.at(-1).coarse, await one.elementHandle())
+  return one.evaluate(figure => figure.found)
+}
+
+async function dragging() {
+  for (const [name, [param, script]] of Object.entries(FIGURES)) {
+    writeFileSync(join(work, name), script)
+    for (const [viewport, density] of [[{ width: 1280, height: 800 }, 1], [{ width: 390, height: 844 }, 2]]) {
+      writeFileSync(join(web, "dragging.html"), `<!doctype html><meta name="viewport" content="width=device-width"><link rel="icon" href="data:,">
+        <script type="module" src="glint-figure.js"></script><glint-figure><script type="text/x-lua" name="${name}">${script}</script></glint-figure>`)
+      const page = await open(`${base}/dragging.html`, viewport, density), one = page.locator("glint-figure"), what = `${name} on a page of ${viewport.width} pixels`
+      await rendered(one, () => {})
+      const shown = await one.locator(".picture").boundingBox(), found = await dragged(page, one, param)
+      const moving = found.filter(picture => picture.coarse && picture.ownSamples === 1), last = found.at(-1)
+      const sizes = [...new Set(moving.map(picture => `${picture.width}x${picture.height}`))], times = moving.map(picture => Math.round(picture.ms)).sort((a, b) => a - b)
+      console.log(`${what}: ${moving.length} pictures of ${sizes.join(", ")}, median ${times[times.length >> 1]} ms`)
+      check(moving.length > 4, `${what}: ${moving.length} pictures while the slider moves`)
+      check(Math.abs(last.width - shown.width * density) <= 1 && last.samples >= 4, `${what}: at rest ${last.width} pixels, ${last.samples} samples`)
+      check(found.every(picture => picture.letters.every(size => size >= 12)), `${what}: letters of ${Math.min(...found.flatMap(picture => picture.letters))} pixels`)
+      check(name !== "vectors.lua" || moving.slice(-3).every(picture => picture.casts === 0), `${what}: a changed material casts again`)
+      const value = await one.evaluate((figure, key) => figure.values[key], param)
+      run(bare(name, work), "--size", `${last.width}x${last.height}`, ...AT_REST, "--set", `${param}=${value}`, "-f", "1", "--force", "--quiet", "-o", "dragged_####.png")
+      check(same(await codesShown(one), await codesOf(page, join(work, "dragged_0001.png"))), `${what}: the bits of the command's picture`)
+      await page.screenshot({ path: join(work, `rest-${param}-${viewport.width}.png`) })
+      await close(page, what)
+    }
+  }
+  rmSync(join(web, "dragging.html"))
+}
+
+for (const test of [playground, sharing, figure, course, published, live, steps, dragging, phone]) {
   if (!test.name.includes(process.env.T ?? "")) continue
   try {
     await test()

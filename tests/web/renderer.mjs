@@ -5,11 +5,11 @@ import os from "node:os"
 import path from "node:path"
 import { pathToFileURL } from "node:url"
 
-// The pages' modules, without the engine.
+// The module under test, without the engine and the controls.
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "glint-"))
-for (const name of ["renderer.js", "controls.js"]) fs.copyFileSync(`bindings/web/pages/${name}`, path.join(folder, name))
-fs.writeFileSync(path.join(folder, "glint.mjs"), "export const load = null")
-fs.writeFileSync(path.join(folder, "package.json"), '{ "type": "module" }')
+fs.copyFileSync("bindings/web/pages/renderer.js", path.join(folder, "renderer.js"))
+for (const [name, text] of Object.entries({ "glint.mjs": "export const load = null", "controls.js": "export const written = String", "package.json": '{ "type": "module" }' }))
+  fs.writeFileSync(path.join(folder, name), text)
 const { Renderer } = await import(pathToFileURL(path.join(folder, "renderer.js")))
 process.on("exit", () => fs.rmSync(folder, { recursive: true }))
 

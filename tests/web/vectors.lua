@@ -9,7 +9,7 @@ local scene = glint.scene {
 }
 if P.marks then
   scene:add(glint.arrow { hidden = "none", from = { 0, 0, -2 }, to = { 0, 2.5, -2 }, label = [[$\hat n$]], color = "#1d2228" })
-  scene:add(glint.label { text = "size 16", at = { 0, 0 }, size = 16, color = "black" })
+  scene:add(glint.label { text = [[size 16, $k_s\,(\hat r\cdot\hat v)^n$]], at = { 0, 0 }, size = 16, color = "black" })
   scene:add(glint.lobe { point = { 0, 1, 0 }, normal = { 0, 1, 0 }, to_light = { 1, 1, 0 }, material = red, scale = 1.1 })
 end
 return glint.animation { scene = scene, frames = 1, width = 640, height = 400 }

@@ -7,9 +7,10 @@ const ANSWER_MS = 40        // time for a picture while a control moves
 const PIXELS_MS = 16        // of which its pixels get at least this, whatever the fixed part takes
 const FIRST_SCALE = 0.25    // size of the first picture, before any cost is known
 const STEP_MS = 1000        // a picture that takes longer appears in smaller sizes first
-const CHANGE_RATIO = 1.25   // a drag changes the size of its pictures if it is wrong by this factor
+const CHANGE_RATIO = 1.25   // a drag changes the size of its pictures if it is wrong by this factor,
+const CHANGE_MOST = 4       // at most by this factor, since a few pictures may be slow by chance,
 const SETTLED = 4           // after this number of pictures
-const RECENT = 5            // measurements whose median counts
+const RECENT = 5            // measurements that count
 const WAIT_MS = 500         // shortest time that is shown as a line
 const SAMPLES = 4           // fewest samples of a pixel at rest
 const LETTERS = 12          // smallest size of letters, CSS pixels
@@ -48,7 +49,8 @@ export function wait(line, ms) {
   line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
 }
 
-const median = list => [...list].sort((a, b) => a - b)[list.length >> 1]
+// Returns the lower quartile: other work of the machine slows some pictures down.
+const usual = list => [...list].sort((a, b) => a - b)[list.length - 1 >> 2]
 
 // The cost of a picture: a fixed part, which has the script, the overlays and the page, and a part for each sample.
 export class Cost {
@@ -68,9 +70,9 @@ export class Cost {
 
   get isKnown() { return this.#sample.length > 0 }
   // Returns the expected time of a picture; ms.
-  of(samples) { return this.isKnown ? median(this.#fixed) + samples * median(this.#sample) : Infinity }
+  of(samples) { return this.isKnown ? usual(this.#fixed) + samples * usual(this.#sample) : Infinity }
   // Returns the number of samples for which there is time.
-  samplesIn(ms) { return Math.max(ms - median(this.#fixed), PIXELS_MS) / Math.max(median(this.#sample), 1e-9) }
+  samplesIn(ms) { return Math.max(ms - usual(this.#fixed), PIXELS_MS) / Math.max(usual(this.#sample), 1e-9) }
 }
 
 // Renders a job's pictures as the controls request them: one at a time, the newest request first. Each change is
@@ -157,7 +159,7 @@ export class Renderer {
     await this.#picture(this.job, request, this.drag.scale, isFirst || this.drag.count === 1)
     const better = this.#answerScale() / this.drag.scale
     if (this.drag.isChanged || this.drag.count < SETTLED || Math.max(better, 1 / better) < CHANGE_RATIO) return
-    this.drag.scale *= better
+    this.drag.scale *= Math.min(CHANGE_MOST, Math.max(better, 1 / CHANGE_MOST))
     this.drag.isChanged = true
   }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define LEAST_SIZE 10.0 ///< smallest default font size, unless the page has one; pixels
+#define SCRIPT_RATIO (7 / 6.0) ///< on a page with a smallest size: default size in sizes of the smallest scripts
 #define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
@@ -49,9 +50,10 @@ glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_over
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_CHART] = 0 };
     glint_layout layout = { .overlays = overlays, .desc = desc, .dpi = dpi, .ink = ink };
-    const double least = overlays->least > 0 ? overlays->least : desc->has_size ? 0 : LEAST_SIZE;
+    const double least = desc->has_size ? overlays->least : overlays->least > 0 ? SCRIPT_RATIO * overlays->least : LEAST_SIZE;
     layout.em = fmax(desc->has_size ? glint_layout_pixels(desc->size, dpi) : overlays->height / SIZE_SHARE, least);
     layout.typeface = glint_typeface_open(ink->letters, layout.em);
+    layout.typeface.least = overlays->least;
     if (desc->kind != GLINT_OVERLAY_LABEL)
         layout.length = desc->has_length ? glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;
     layout.padding = desc->has_background ? (int)ceil(PADDING * layout.em) : 0;

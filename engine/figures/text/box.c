@@ -26,7 +26,8 @@ void glint_setter_fail(glint_setter *s, const char *at, const char *format, ...)
 double glint_setter_em(const glint_setter *s, glint_level of)
 {
     static const double sizes[] = { 1, 1, 0.7, 0.5 };
-    return s->typeface->em * sizes[of];
+    const double em = s->typeface->em;
+    return fmax(em * sizes[of], fmin(em, s->typeface->least));
 }
 
 double glint_setter_thickness(const glint_setter *s, glint_level of)

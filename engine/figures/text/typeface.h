@@ -7,6 +7,7 @@
 typedef struct glint_typeface {
     glint_letters *letters; ///< borrowed; NULL: the bitmap font
     double em; ///< font size, pixels
+    double least; ///< smallest font size of scripts in formulas, unless `em` is smaller, pixels
     int scale; ///< for the bitmap font: picture pixels per font pixel, >= 1
     int height; ///< height from the lowest to the highest point of letters; pixels
     int above; ///< the part of `height` above the baseline; pixels
