@@ -316,6 +316,13 @@ check(find(lens, "samples", 1).rmse > 3 * find(lens, "samples", 16).rmse
   and find(lens, "samples", 16).rmse > 1.5 * find(lens, "samples", 64).rmse, "a lens converges: %g, %g, %g",
   find(lens, "samples", 1).rmse, find(lens, "samples", 16).rmse, find(lens, "samples", 64).rmse)
 
+-- A limit of the light of paths is a bias: in a ball whose walls glow with 4, each path brings 2.
+local limited = study("limited", still("limited.lua", [[ambient = 8, indirect = { samples = 2, bounces = 1 },
+  glint.sphere { center = { 0, 0, 0 }, radius = 50, material = glint.material { diffuse = 0.5 } } ]], "exposure = -2,") .. " --knobs clamp")
+check(find(limited, "clamp", 0).default and math.abs(find(limited, "clamp", 1).bias - 1) < 1e-3
+  and find(limited, "clamp", 1).loss == "with limited light of random paths", "clamp 1: bias %g", find(limited, "clamp", 1).bias)
+check(find(limited, "clamp", 4).bias == 0 and find(limited, "clamp", 4).rmse < 1e-4, "clamp 4 takes no light")
+
 -- A shutter: the frame function runs at the shutter's times, with all its movements, also under another knob.
 local exposed = [[local glint = require "glint"
 local lamp = glint.point_light { position = { 0, 4, 4 } }
