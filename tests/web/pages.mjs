@@ -447,6 +447,8 @@ async function dragging() {
       check(moving.length > 4, `${what}: ${moving.length} pictures while the slider moves`)
       check(Math.abs(last.width - shown.width * density) <= 1 && last.samples >= 4, `${what}: at rest ${last.width} pixels, ${last.samples} samples`)
       check(found.every(picture => picture.letters.every(size => size >= 12)), `${what}: letters of ${Math.min(...found.flatMap(picture => picture.letters))} pixels`)
+      const blanks = await one.evaluate(figure => [...figure.shadowRoot.querySelectorAll(".over text")].every(text => text.getNumberOfChars() === text.textContent.length))
+      check(blanks, `${what}: blanks beside formulas`)
       check(name !== "vectors.lua" || moving.slice(-3).every(picture => picture.casts === 0), `${what}: a changed material casts again`)
       const value = await one.evaluate((figure, key) => figure.values[key], param)
       run(bare(name, work), "--size", `${last.width}x${last.height}`, ...AT_REST, "--set", `${param}=${value}`, "-f", "1", "--force", "--quiet", "-o", "dragged_####.png")

@@ -48,6 +48,7 @@ const style = `
   .picture ::slotted(img) { display: block; width: 100%; height: auto; }
   .over, .over svg { position: absolute; inset: 0; width: 100%; height: 100%; }
   .over { pointer-events: none; user-select: none; }
+  .over text { white-space: pre; }
   .wait { position: absolute; bottom: 0; width: 100%; height: 3px; background: #4a90d9; transform-origin: left; }
   .error { margin: 0; padding: 0.6em 0.8em; white-space: pre-wrap; overflow-wrap: anywhere; font: 0.8125rem/1.4 ui-monospace, monospace;
     background: #8b1a1a; color: #fff; }
