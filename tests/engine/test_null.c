@@ -125,11 +125,16 @@ static void test_null_of_objects(void **state)
     REFUSES("out", glint_words_create(NULL, &error));
     REFUSES("words", glint_words_add(NULL, "a", 1, 1, &error));
     REFUSES("desc", glint_mesh_create(NULL, &shape, &error));
+    REFUSES("desc", glint_mesh_create_counting(NULL, &(glint_mesh_faults) { 0 }, &shape, &error));
+    REFUSES("faults", glint_mesh_create_counting(&mesh, NULL, &shape, &error));
     REFUSES("path", glint_mesh_load(NULL, &mesh, &shape, &error));
     REFUSES("center", glint_sphere_mesh_create(NULL, 1, 8, &mesh, &shape, &error));
     REFUSES("desc", glint_overlay_create(NULL, &(glint_overlay *) { NULL }, &error));
     REFUSES("curves", glint_chart_create(NULL, 1, &(glint_chart *) { NULL }, &error));
     REFUSES("desc", glint_texture_create(NULL, &(glint_texture *) { NULL }, &error));
+    REFUSES("path", glint_texture_read(NULL, &(glint_texture_desc) { 0 }, &(glint_texture *) { NULL }, &error));
+    REFUSES("desc", glint_texture_read("a.png", NULL, &(glint_texture *) { NULL }, &error));
+    REFUSES("image", glint_image_overlays_svg(NULL, &(glint_page) { 0 }, &(char *) { NULL }, &error));
     glint_builder *builder = NULL;
     assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, NULL), GLINT_OK);
     REFUSES("slopes", glint_builder_parameter(builder, 1, NULL, 1, &(glint_value) { 0 }, &error));
@@ -195,6 +200,7 @@ static void test_null_of_every_function(void **state)
     NOTHING(glint_program_tangent(NULL, 0));
     NOTHING(glint_program_listing(NULL));
     INVALID(glint_texture_create(NULL, NULL, NULL));
+    INVALID(glint_texture_read(NULL, NULL, NULL, NULL));
     INVALID(glint_texture_rewrap(NULL, 0, NULL, NULL));
     NOTHING(glint_texture_retain(NULL));
     glint_texture_release(NULL);
@@ -247,6 +253,7 @@ static void test_null_of_every_function(void **state)
     glint_words_destroy(NULL);
     NOTHING(glint_rows_read(&(glint_rows_desc) { .field_count = 1 }, NULL, 0, 1, &(size_t) { 0 }, &(size_t) { 0 }));
     INVALID(glint_mesh_create(NULL, NULL, NULL));
+    INVALID(glint_mesh_create_counting(NULL, NULL, NULL, NULL));
     INVALID(glint_mesh_load(NULL, NULL, NULL, NULL));
     INVALID(glint_sphere_mesh_create(NULL, 0, 0, NULL, NULL, NULL));
     NOTHING(glint_mesh_bend(NULL));
@@ -304,6 +311,8 @@ static void test_null_of_every_function(void **state)
     NOTHING(glint_image_retain(NULL));
     glint_image_release(NULL);
     NOTHING(glint_image_width(NULL));
+    NOTHING(glint_image_without_overlays(NULL));
+    INVALID(glint_image_overlays_svg(NULL, NULL, NULL, NULL));
     NOTHING(glint_image_height(NULL));
     NOTHING(glint_image_has_pass(NULL, 0));
     NOTHING(glint_image_derivative(NULL, 0));
@@ -318,6 +327,8 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_image_rgba(NULL, NULL, NULL, NULL));
     glint_frame_key(NULL, NULL, NULL);
     glint_whole_key(NULL, NULL, NULL);
+    glint_plan_key(NULL, NULL);
+    glint_plan_add_pass_key(NULL, GLINT_PASS_BEAUTY, NULL);
     NOTHING(glint_file_has_key(NULL, NULL));
     INVALID(glint_writer_create(0, 0, NULL, NULL));
     glint_writer_destroy(NULL);
