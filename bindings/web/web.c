@@ -169,8 +169,8 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     job.image = glint_image_retain(work->image);
     job.render = work->render;
     job.camera = work->camera;
-    job.sample_ms = work->stats.render_ms / samples_of(&job.render.desc);
-    job.pixel_ms = work->stats.render_ms;
+    job.pixel_ms = work->stats.render_ms + work->stats.tone_ms; // a browser's clock is too coarse to tell them apart
+    job.sample_ms = job.pixel_ms / samples_of(&job.render.desc);
     job.casts = (double)work->stats.rays.primary;
 }
 

@@ -287,6 +287,7 @@ async function phone() {
   await touch("touchEnd")
   await page.waitForTimeout(300)
   check(await page.evaluate(() => scrollY) > 50, "phone: a vertical finger scrolls the page")
+  check(await figure.evaluate(one => one.request().orbit) === undefined, "phone: the view stands while the page scrolls")
   await close(page, "phone")
 }
 
@@ -334,6 +335,11 @@ async function published() {
   await still.goto(`file://${join(work, "moving_lamp.html")}`)
   check(await still.locator("glint-figure img").isVisible(), "published: a picture without JavaScript")
   await context.close()
+  const narrow = await browser.newContext({ javaScriptEnabled: false, viewport: { width: 390, height: 844 } }), phone = await narrow.newPage()
+  await phone.goto(`file://${join(work, "moving_lamp.html")}`)
+  const right = await phone.locator("glint-figure img").evaluate(one => one.getBoundingClientRect().right)
+  check(right <= 390, `published: without JavaScript, the picture fits a phone: ${right}`)
+  await narrow.close()
 }
 
 // The example of the recipes: its script and its page.

@@ -252,7 +252,7 @@ await test("steps are pictures of --samples n, with the errors of --until-light"
 function errorOf(samples) {
   const lines = execFileSync(GLINT, ["tests/web/soft.lua", "--samples", String(samples), "--until-light", "1e-9", "-o", "none", "--json"],
     { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })
-  return Number(/"error":([0-9.e-]+)/.exec(lines)[1])
+  return Number([...lines.matchAll(/"error":([0-9.e-]+)/g)].at(-1)[1])
 }
 
 await test("no steps for one sample, nor for a call of scene:render", async () => {

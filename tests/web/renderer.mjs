@@ -93,6 +93,32 @@ await test("a drag changes its size at most once, and answers in 50 ms", async (
   }
 })
 
+await test("a picture of the same values, which is reused, does not count", async () => {
+  let isRepeated = false
+  const one = figure({ fixed: () => 4, sample: () => isRepeated ? 0 : 2e-3 }) // 18,000 samples fit into 40 ms
+  await one.step(0)
+  await one.rest()
+  one.seen.length = 0
+  for (let n = 1; n < 20; n++)
+    for (isRepeated of [false, true]) await one.step(n)
+  assert.ok(one.seen.every(({ width }) => width < 256), `${sizes(one.seen)}`)
+})
+
+await test("a drag whose pictures become much slower shrinks them once more", async () => {
+  let cost = 1e-5
+  const one = figure({ fixed: () => 4, sample: () => cost })
+  await one.step(0)
+  await one.rest()
+  one.seen.length = 0
+  for (let n = 1; n < 40; n++) {
+    if (n === 10) cost = 2e-3
+    await one.step(n)
+  }
+  const last = one.seen.slice(-20)
+  assert.ok(last.every(({ width }) => width < 256), `${sizes(last)}`)
+  assert.ok(sizes(one.seen).length <= 3, `${sizes(one.seen)}`)
+})
+
 await test("a script that alone takes too long still has a picture", async () => {
   const one = figure({ fixed: () => 200, sample: () => 2e-4 })
   await one.step(0)

@@ -47,6 +47,7 @@ export class Gestures {
     on("pointermove", this.drag)
     on("pointerup", this.release)
     on("pointercancel", this.release)
+    on("contextmenu", event => this.mayTurn && event.preventDefault()) // the right button shifts the view
     on("keydown", this.key)
     on("wheel", this.wheel, { passive: false })
     on("dblclick", event => event.target === layer && this.mayTurn && this.turn({ ...STILL }, false))
@@ -111,7 +112,7 @@ export class Gestures {
     if (!handle && !this.mayTurn) return
     event.target.setPointerCapture(event.pointerId)
     const at = { x: event.clientX, y: event.clientY }
-    this.pointers.set(event.pointerId, { ...at, first: at, shifts: event.shiftKey || event.button > 0, waits: event.pointerType === "touch" && !handle,
+    this.pointers.set(event.pointerId, { ...at, first: at, view: this.view, shifts: event.shiftKey || event.button > 0, waits: event.pointerType === "touch" && !handle,
       handle: handle && { ...handle, from: this.pointOf(name) } })
     if (handle) this.held = name
   }
@@ -119,7 +120,9 @@ export class Gestures {
   drag(event) {
     const pointer = this.pointers.get(event.pointerId)
     if (!pointer) return
-    if (pointer.waits && this.pointers.size === 1 && Math.hypot(event.clientX - pointer.first.x, event.clientY - pointer.first.y) < SLOP) return
+    // A finger that moves up or down scrolls the page.
+    const aside = Math.abs(event.clientX - pointer.first.x), along = Math.abs(event.clientY - pointer.first.y)
+    if (pointer.waits && this.pointers.size === 1 && (Math.hypot(aside, along) < SLOP || along > aside)) return
     pointer.waits = false
     const { width, height } = this.layer.getBoundingClientRect()
     if (pointer.handle) {
@@ -151,6 +154,7 @@ export class Gestures {
     const pointer = this.pointers.get(event.pointerId)
     if (!this.pointers.delete(event.pointerId)) return
     if (pointer.handle) this.held = undefined
+    if (event.type === "pointercancel" && !pointer.handle) return pointer.waits || this.turn(pointer.view, false)
     if (pointer.handle && pointer.last) this.move(pointer.handle, pointer.handle.from, ...pointer.last, false)
     else if (!pointer.handle && !pointer.waits && this.pointers.size === 0) this.turn(this.view, false)
   }

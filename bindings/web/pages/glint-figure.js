@@ -54,7 +54,7 @@ const style = `
     background: #8b1a1a; color: #fff; }
   form { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(15rem, 100%), 1fr)); gap: 0.75rem 1.5rem; margin: 0.6rem 0; }
   form.waits { visibility: hidden; }
-  .timing { flex: 1 1 12rem; font-size: 0.875rem; min-height: 1lh; }
+  .timing { flex: 1 1 12rem; contain: inline-size; font-size: 0.875rem; min-height: 1lh; }
   .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
   .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; margin: 0.5rem 0; }
   .bar input { flex: 1 1 8rem; min-width: 0; }
@@ -174,7 +174,7 @@ export class GlintFigure extends HTMLElement {
     const inside = this.querySelector("img")
     const { width, height } = this.job ?? { width: Number(inside?.getAttribute("width")), height: Number(inside?.getAttribute("height")) }
     if (!this.job && !(width && height)) return
-    const [wide, high] = ["width", "height"].map(name => Number(this.getAttribute(name)))
+    const [wide, high] = ["width", "height"].map(name => parseFloat(this.getAttribute(name)?.endsWith("%") ? "" : this.getAttribute(name)) || 0)
     this.wide = wide || (high ? high * width / height : width)
     this.ratio = wide && high ? wide / high : width / height
     this.part$("figure").style.maxWidth = `${this.wide}px`
@@ -244,7 +244,7 @@ export class GlintFigure extends HTMLElement {
 
   // ---- Attributes ----
 
-  attributeOf(name) { return OWN.includes(name.toLowerCase()) ? `set-${name}` : name }
+  attributeOf(name) { return /^on/i.test(name) || OWN.includes(name.toLowerCase()) ? `set-${name}` : name }
 
   // Writes a value into its attribute; undefined removes it.
   reflect(name, value) {

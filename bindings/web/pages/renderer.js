@@ -9,7 +9,8 @@ const FIRST_SCALE = 0.25    // size of the first picture, before any cost is kno
 const STEP_MS = 1000        // a picture that takes longer appears in smaller sizes first
 const CHANGE_RATIO = 1.25   // a drag changes the size of its pictures if it is wrong by this factor,
 const CHANGE_MOST = 4       // at most by this factor, since a few pictures may be slow by chance,
-const SETTLED = 4           // after this number of pictures
+const SETTLED = 4           // after this number of pictures,
+const SLOW = 3              // and once more after this number of pictures that each took twice ANSWER_MS
 const RECENT = 5            // measurements that count
 const WAIT_MS = 500         // shortest time that is shown as a line
 const SAMPLES = 4           // fewest samples of a pixel at rest
@@ -49,8 +50,8 @@ export function wait(line, ms) {
   line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
 }
 
-// Returns the lower quartile: other work of the machine slows some pictures down.
-const usual = list => [...list].sort((a, b) => a - b)[list.length - 1 >> 2]
+// Returns the lower quartile, since other work of the machine slows some pictures down; of a few the median.
+const usual = list => [...list].sort((a, b) => a - b)[list.length - 1 >> (list.length < RECENT ? 1 : 2)]
 
 // The cost of a picture: a fixed part, which has the script, the overlays and the page, and a part for each sample.
 export class Cost {
@@ -77,7 +78,7 @@ export class Cost {
 
 // Renders a job's pictures as the controls request them: one at a time, the newest request first. Each change is
 // answered by a picture of the best size for which there is time. A drag, a series of changes without a rest, keeps this
-// size or changes it once. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change
+// size or changes it once, and once more if it is much too slow. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change
 // ends them.
 //   page      returns the size of the picture in the page, CSS pixels: { width, height }
 //   size      returns the picture's own size if it may differ: a page that is too narrow shows it smaller
@@ -91,7 +92,7 @@ export class Renderer {
     this.cost = new Cost()
     this.running = false
     this.next = null
-    this.drag = null // { scale, count, isChanged }; count: pictures so far, 0 for the first picture of all
+    this.drag = null // { scale, count, changes, slow }; count: pictures so far, 0 for the first picture of all
     this.second = null // a promise of another job of the script, for the pictures at rest
   }
 
@@ -154,21 +155,27 @@ export class Renderer {
   // Shows a picture of the drag's size.
   async #answer(request) {
     const isFirst = !this.cost.isKnown
-    this.drag ??= { scale: this.#answerScale(), count: 0, isChanged: false }
-    if (!isFirst) this.drag.count++
-    await this.#picture(this.job, request, this.drag.scale, isFirst || this.drag.count === 1)
-    const better = this.#answerScale() / this.drag.scale
-    if (this.drag.isChanged || this.drag.count < SETTLED || Math.max(better, 1 / better) < CHANGE_RATIO) return
-    this.drag.scale *= Math.min(CHANGE_MOST, Math.max(better, 1 / CHANGE_MOST))
-    this.drag.isChanged = true
+    const drag = this.drag ??= { scale: this.#answerScale(), count: 0, changes: 0, slow: 0 }
+    if (!isFirst) drag.count++
+    const ms = await this.#picture(this.job, request, drag.scale, isFirst || drag.count === 1)
+    drag.slow = ms > 2 * ANSWER_MS ? drag.slow + 1 : 0
+    const better = this.#answerScale() / drag.scale
+    const isDue = drag.changes ? drag.changes < 2 && drag.slow >= SLOW && better < 1 : drag.count >= SETTLED
+    if (!isDue || Math.max(better, 1 / better) < CHANGE_RATIO) return
+    drag.scale *= Math.min(CHANGE_MOST, Math.max(better, 1 / CHANGE_MOST))
+    drag.changes++
   }
 
-  // Renders and shows a picture of one sample a pixel.
+  // Renders and shows a picture of one sample a pixel. Returns its time. A picture of the same values as the one before it
+  // is reused and costs nothing, so it does not count.
   async #picture(job, request, scale, isCold, signal) {
-    const since = this.clock.now(), sizes = this.#sizes(scale)
+    const since = this.clock.now(), sizes = this.#sizes(scale), values = JSON.stringify(request), repeats = values === this.values
     const image = await job.render({ ...request, ...sizes, samples: 1, signal })
+    this.values = values
     this.shown(image, { coarse: true, ms: this.clock.now() - since })
-    this.cost.add({ ms: this.clock.now() - since, pixelMs: image.pixelMs, samples: image.width * image.height, isCold })
+    const ms = this.clock.now() - since
+    if (!repeats || isCold) this.cost.add({ ms, pixelMs: image.pixelMs, samples: image.width * image.height, isCold })
+    return ms
   }
 
   // Shows the picture of full size and samples.
