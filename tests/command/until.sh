@@ -151,10 +151,10 @@ done
 # ---- Time ----
 
 began=$(date +%s%N)
-exits 0 "seconds" scene.lua -f 2 --set what=indirect --size 120x80 --seconds 1.5 --json -o 'time_%d.png'
+exits 0 "seconds" scene.lua -f 2 --set what=indirect --size 120x80 --seconds 5 --json -o 'time_%d.png'
 ms=$((($(date +%s%N) - began) / 1000000)) n=$(number samples)
 check "more samples than the first picture has" test "$n" -ge 4
-check "no step is begun that cannot end in time: $ms ms" test "$ms" -lt 6000 # the machine may be busy
+check "no step is begun that cannot end in time: $ms ms" test "$ms" -lt 20000 # the machine may be busy
 exits 0 "the samples of the time" scene.lua -f 2 --set what=indirect --size 120x80 --samples "$n" -q -o 'n_%d.png'
 check "the picture of the time has the bytes of its samples" cmp time_2.png n_2.png
 exits 0 "a time for a picture without noise" scene.lua -f 2 --set what=flat --seconds 100 --json -o 'flat_%d.png'
