@@ -110,7 +110,8 @@ local FONT <const> = '<script type="application/octet-stream" id="glint-font">%s
 
 local FIGURE <const> = [[
 <glint-figure @ATTRIBUTES@ style="max-width: @WIDTH@px">
-<img src="data:image/png;base64,@POSTER@" width="@WIDTH@" height="@HEIGHT@" alt="@TITLE@" style="max-width: 100%; height: auto">
+<img src="data:image/png;base64,@POSTER@" width="@WIDTH@" height="@HEIGHT@" alt="@TITLE@"
+style="max-width: 100%; height: auto">
 </glint-figure>
 <script type="application/json" id="glint-job">@JOB@</script>
 <script type="application/octet-stream" id="glint-wasm">@WASM@</script>
