@@ -117,14 +117,14 @@ check-portable: ## PORTABLE=1 at -O0 without any optional library: files, folder
 	@tests/deps.sh build test
 	+@$(PORTABLE_MAKE) check-portable-run
 
-check-portable-run: all $(filter $(BUILD)/%,$(PORTABLE_TESTS))
+check-portable-run: all $(filter $(BUILD)/%,$(PORTABLE_TESTS)) $(BUILD)/tests/command/alone
 	@T="$(T)" $(RUNNER) $(PORTABLE_TESTS)
 
 check-clang: ## clang's build without a warning, tests too: kernels, goldens, the command; installs clang through apt
 	@tests/deps.sh build test fuzz
 	+@$(CLANG_MAKE) check-clang-run
 
-check-clang-run: all $(TEST_BIN) $(HARD_BIN) # every test compiles with it, too
+check-clang-run: all $(TEST_BIN) $(BUILD)/tests/command/alone $(HARD_BIN) # every test compiles with it, too
 	@T="$(T)" GLINT_CASE_STEP=5 $(RUNNER) $(CLANG_TESTS)
 
 .PHONY: check-package
