@@ -1,4 +1,4 @@
-/// glint: a ray-tracing render engine. This header is the whole public C API.
+/// glint: a ray-tracing render engine. This header has the renderer; glint_files.h and others have the rest of the API.
 ///
 /// The order of use: describe (materials, lights, shapes, a camera, a scene), plan (glint_plan_create takes a
 /// snapshot of the scene and lists the stages that a frame needs), render (glint_render runs the plan), write.
@@ -501,9 +501,9 @@ glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
 /// Replaces the description by a copy of the same kind; on error nothing changes.
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
-/// Returns the description; borrowed. Only these fields are defined: for GLINT_SHAPE_SPHERES kind, transform,
-/// two_sided, name and material (the first); for GLINT_SHAPE_CYLINDERS these and `capped`; for a mesh these and
-/// `shading` and `terminator`; for a group kind, transform and name; for a combined solid these, two_sided and material. Setting `material` replaces the first material.
+/// Returns the description; borrowed. Many spheres or cylinders, meshes, groups and combined solids define only some
+/// fields: kind, transform and name; all but groups two_sided and material, the first one, which setting replaces;
+/// cylinders `capped`; meshes `shading` and `terminator`.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 /// Takes another reference; returns its argument.
 glint_shape *glint_shape_retain(glint_shape *shape);

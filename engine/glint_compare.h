@@ -76,10 +76,13 @@ glint_status glint_reference_difference(const glint_reference *reference, const 
 /// Returns the seed of the frame's partner: an independent picture with four times the samples of the frame.
 double glint_partner_seed(const glint_render_desc *desc);
 /// Estimates the error of a picture of at least 2 samples a pixel: the root of the mean squared difference to the
-/// picture of infinitely many samples, over pixels and channels. tone: the error of the picture that people see, in
-/// fractions of white: light after exposure, curve and sRGB's transfer, whatever the tone's transfer and bits are; NULL: the
-/// error of linear light, where channels that are not finite do not count. `partner` is rendered from the same scene with the frame's partner seed and four times the samples; with
-/// fewer, the estimate is larger. Both images have the beauty pass.
+/// picture of infinitely many samples, over pixels and channels. Both images have the beauty pass.
+///
+/// partner  rendered from the same scene with the frame's partner seed and four times the samples; with fewer, the
+///          estimate is larger.
+/// tone     The error is of the picture that people see, in fractions of white: light after exposure, curve and sRGB's
+///          transfer, whatever the tone's transfer and bits are. NULL: the error is of linear light, where channels
+///          that are not finite do not count.
 ///
 /// With one sample the estimate sees no edges, because the only sample is in the middle of the pixel. It never sees
 /// details that both pictures miss.

@@ -3,7 +3,7 @@
 -- so that no other file needs to; its references do not count.
 local MOST <const> = 4
 
--- The parts that each part may call. Of the renderer, others call what the public headers declare.
+-- The parts that each part may call; "public": only what the public headers declare.
 local KNOWS <const> = {
     base = {},
     film = { base = true },

@@ -1,5 +1,7 @@
-/// Bonds: finds pairs of close atoms, and makes cylinders of them. The atoms are sorted into cells as wide as the longest bond, so each is compared only
-/// with the atoms of 27 cells. In a periodic box, images of the atoms near its faces are added to the list.
+/// Bonds: finds pairs of close atoms, and makes cylinders of them.
+///
+/// The atoms are sorted into cells as wide as the longest bond, so each is compared only with the atoms of 27 cells. In a
+/// periodic box, images of the atoms near its faces are added to the list.
 #include "engine/base/status.h"
 #include "engine/glint_data.h"
 
