@@ -559,7 +559,7 @@ typedef struct glint_spheres_desc {
 /// Makes spheres. A message names the first invalid sphere, counted from 1: "data: sphere 12: radius > 0 expected,
 /// got -1".
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
-/// Returns x, y, z and radius of all spheres; owned by the shape. NULL for other kinds.
+/// Returns the numbers of all spheres or cylinders, 4 or 7 each; owned by the shape. NULL for other kinds.
 const double *glint_spheres_data(const glint_shape *shape);
 /// Returns the material of each sphere, cylinder or triangle, from 0; owned by the shape. NULL: all have the first.
 const uint32_t *glint_spheres_index(const glint_shape *shape);

@@ -147,6 +147,26 @@ double glint_mesh_bend(const glint_shape *shape);
 /// another function made the shape.
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
 
+/// The triangles of a mesh. The pointers belong to the shape.
+typedef struct glint_mesh_data {
+    const double *vertices; ///< x, y, z of each vertex
+    size_t vertex_count; ///< number of vertices
+    const uint32_t *triangles; ///< three indices of vertices, from 0, for each triangle
+    size_t triangle_count; ///< number of triangles
+    const double *normals; ///< normals of length 1, 0 for a corner without a normal; NULL: none were given
+    /// Index of the normal of each corner of `triangles`; NULL: each vertex has one normal, in order
+    const uint32_t *normal_corners;
+    const double *uv; ///< u, v pairs; NULL: there are none
+    const uint32_t *uv_corners; ///< the same for the pairs
+    const uint32_t *faces; ///< the face that each triangle was cut from, from 0; NULL: each triangle is a face
+} glint_mesh_data;
+
+/// Describes the triangles of a mesh. Returns false and writes nothing for another shape.
+bool glint_mesh_get(const glint_shape *shape, glint_mesh_data *out);
+/// Returns whether a shape was given a material. Otherwise its material has default fields, or, in a combined solid, is
+/// that of the whole. False for many spheres and cylinders.
+bool glint_shape_has_material(const glint_shape *shape);
+
 // ---- Stages of a plan ----------------------------------------------------------------------------------------------
 
 /// Why a stage is in a plan. Both texts belong to the plan.

@@ -41,7 +41,7 @@ $(CORE)/glint: $(BINDINGS_OBJ) $(CORE_OBJ)
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN) $(CORE)/glint
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,alone cli completion denoise effects exposure faults films gallery golden inputs install kills left_out memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
+              $(addprefix tests/command/,$(addsuffix .sh,alone cli completion denoise dump effects exposure faults films gallery golden inputs install kills left_out memory mistakes parts povray publish python readme relight sweeps until untrusted vectors warnings watch)) tests/machines/systems.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

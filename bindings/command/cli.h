@@ -28,7 +28,8 @@ typedef enum cli_command {
     CLI_JOIN = 2048,
     CLI_HELP = 4096,
     CLI_PUBLISH = 8192,
-    CLI_RELIGHT = 16384
+    CLI_RELIGHT = 16384,
+    CLI_DUMP = 32768
 } cli_command;
 
 typedef enum cli_words { ///< words that follow a command's name
@@ -55,7 +56,7 @@ typedef struct cli_command_name {
     const char *synopsis; ///< the arguments on the command line
     const char *help; ///< one line for people
 } cli_command_name;
-#define CLI_COMMAND_COUNT 15
+#define CLI_COMMAND_COUNT 16
 extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
 const cli_command_name *cli_command_row(cli_command command); ///< returns the row of a command
 
@@ -305,6 +306,7 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run);
 /// Writes the remaining frames and gives the last warnings. good: the script ended well. False: the run has failed.
 bool cli_finish_frames(glintL_run *run, bool good);
 int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
+int cli_dump(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run);
 int cli_watch(cli_options *options, cli_output *output, glintL_run *run);

@@ -132,6 +132,8 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
       "render the frames of a script; the word render is optional" },
     { "explain", CLI_EXPLAIN, CLI_SCRIPT, CLI_RUN, cli_explain, "SCRIPT [--frame N] [--programs] [--json]",
       "run the script and show what a frame needs, and which object needs it" },
+    { "dump", CLI_DUMP, CLI_SCRIPT, CLI_RUN, cli_dump, "SCRIPT [-f N] [-o FILE.lua]",
+      "write the scene of one frame as a script that renders the same picture" },
     { "describe", CLI_DESCRIBE, CLI_SCRIPT, CLI_RUN, cli_describe, "SCRIPT --json",
       "list the parameters of a script, for programs" },
     { "compare", CLI_COMPARE, CLI_FILES, CLI_SIGNALS, cli_compare, "A B [--fail X] [--warn X]",

@@ -8,7 +8,7 @@
 
 #include "bindings/command/cli.h"
 
-#define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
+#define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DUMP | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
 #define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW | CLI_JOIN | CLI_RELIGHT)
 #define ALL (SHOWN | FILES | CLI_PUBLISH | CLI_COMPLETION | CLI_HELP)
@@ -270,7 +270,7 @@ static bool read_live(cli_options *options, const cli_option *option, char *text
 
 #define AT(member) .at = offsetof(cli_options, member)
 #define WITHIN(least, most) .min = (least), .max = (most)
-#define LOOKED CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST | CLI_PUBLISH
+#define LOOKED CLI_RENDER | CLI_EXPLAIN | CLI_DUMP | CLI_WATCH | CLI_COST | CLI_PUBLISH
 
 // The options that are fields of scene:render{} and are described completely by the list of fields.
 #define FIELD(...)
@@ -278,7 +278,7 @@ static bool read_live(cli_options *options, const cli_option *option, char *text
     { #field, 0, text, SHOWN | RELIGHTS_##field, read_render, .help = say },
 
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
-    { "frames", 'f', "LIST", CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE | CLI_RELIGHT, read_frames,
+    { "frames", 'f', "LIST", CLI_RENDER | CLI_DUMP | CLI_SHEET | CLI_ASSEMBLE | CLI_RELIGHT, read_frames,
       .help = "frames to render: 1-3,5,7-20:2,90-; the first is 1", .group = "frames" },
     { "start", 's', "N", CLI_RENDER, read_count, .help = "first frame", AT(start), WITHIN(1, GLINTL_FRAMES_MAX) },
     { "end", 'e', "N", CLI_RENDER, read_count, .help = "last frame", AT(end), WITHIN(1, GLINTL_FRAMES_MAX) },
@@ -289,7 +289,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "sweep", 0, "NAME=VALUES", CLI_RENDER | CLI_EXPLAIN, read_sweep,
       .help = "run the script for each value of a parameter: A:B:N, A:B:*N or V,V,V",
       .repeats = true },
-    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH | CLI_RELIGHT, read_text,
+    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_DUMP | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN | CLI_PUBLISH | CLI_RELIGHT, read_text,
       .help = "output files: %04d or #### is the frame number; .png, .svg, .pdf, .pfm, .npy, .exr, a film, or none", AT(output), .suggest = CLI_SUGGEST_FILES,
       .group = "files" },
     { "passes", 0, "LIST", SCRIPTED, read_render, .help = "also write these:", .suggest = CLI_SUGGEST_PASSES },

@@ -41,7 +41,8 @@ static void read_points(lua_State *L, glint_bonds_desc *desc)
 {
     glintL_many_fetch(L, "points", POINTS);
     const glint_shape *shape = glintL_test_object(L, POINTS, GLINTL_SHAPE);
-    if (shape && (desc->points = glint_spheres_data(shape))) {
+    if (shape && glint_shape_get(shape)->kind == GLINT_SHAPE_SPHERES) {
+        desc->points = glint_spheres_data(shape);
         desc->stride = 4;
         desc->count = glint_spheres_count(shape);
         return;

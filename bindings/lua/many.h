@@ -26,4 +26,13 @@ void glintL_many_read(lua_State *L, const glintL_many *many, size_t material_cou
 /// Retains the materials as long as the userdata at `box` lives.
 void glintL_many_keep(lua_State *L, const glintL_many *many, int box);
 
+// ---- shape_data.c: fields that cannot be assigned ----
+
+int glintL_get_data(lua_State *L); ///< of spheres and cylinders: a row each
+int glintL_get_index(lua_State *L); ///< of many shapes and meshes: the material of each, from 1; nil: all have the first
+int glintL_get_vertices(lua_State *L);
+int glintL_get_faces(lua_State *L); ///< a row a triangle
+int glintL_get_normals(lua_State *L); ///< a row a vertex, or a row a corner of each triangle; nil: none were given
+int glintL_get_uv(lua_State *L); ///< the same
+
 #endif

@@ -2,7 +2,7 @@
 // glint.spheres, glint.cylinders and glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/many.h"
 
 typedef glint_shape_desc desc_type;
 
@@ -57,10 +57,16 @@ static int push_corner(lua_State *L, bool upper)
 static int get_min(lua_State *L) { return push_corner(L, false); }
 static int get_max(lua_State *L) { return push_corner(L, true); }
 
-// Methods of spheres and meshes.
-static const luaL_Reg MANY_GETTERS[] = {
-    { "count", get_count }, { "materials", get_materials }, { "min", get_min }, { "max", get_max }, { NULL, NULL },
-};
+#define EVERY_MANY \
+    { "count", get_count }, { "index", glintL_get_index }, { "materials", get_materials }, { "min", get_min }, { "max", get_max }, \
+        { NULL, NULL }
+
+static const luaL_Reg MANY_GETTERS[] = { { "data", glintL_get_data }, EVERY_MANY };
+static const luaL_Reg MESH_GETTERS[] = { { "vertices", glintL_get_vertices },
+                                         { "faces", glintL_get_faces },
+                                         { "normals", glintL_get_normals },
+                                         { "uv", glintL_get_uv },
+                                         EVERY_MANY };
 
 #define COLLECTION .is_list = true, .getters = GROUP_GETTERS, .methods = GROUP_METHODS
 
@@ -68,7 +74,7 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_SPHERE] = { .name = "sphere", .kind = GLINT_OBJECT_SPHERE, .place = "center" },
     [GLINT_SHAPE_PLANE] = { .name = "plane", .kind = GLINT_OBJECT_PLANE },
     [GLINT_SHAPE_SPHERES] = { .name = "spheres", .kind = GLINT_OBJECT_SPHERES, .getters = MANY_GETTERS },
-    [GLINT_SHAPE_MESH] = { .name = "mesh", .kind = GLINT_OBJECT_MESH, .getters = MANY_GETTERS },
+    [GLINT_SHAPE_MESH] = { .name = "mesh", .kind = GLINT_OBJECT_MESH, .getters = MESH_GETTERS },
     [GLINT_SHAPE_BOX] = { .name = "box", .kind = GLINT_OBJECT_BOX },
     [GLINT_SHAPE_DISK] = { .name = "disk", .kind = GLINT_OBJECT_DISK, .place = "center" },
     [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .kind = GLINT_OBJECT_CYLINDER },

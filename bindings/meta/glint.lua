@@ -341,6 +341,8 @@ function glint.plane(fields) end
 
 ---@class glint.spheres: glint.shape_fields, glint.object
 ---@field count integer  number of spheres; read-only
+---@field data glint.array  a copy of the numbers, a row x, y, z, radius for each sphere; read-only
+---@field index glint.array?  the number of each sphere's material in `materials`; nil: all have the first; read-only
 ---@field materials glint.material[]  a new list of the materials; read-only
 ---@field min glint.vector  the corner of the smallest coordinates of the box around the spheres, before the transform; read-only
 ---@field max glint.vector  the corner of the largest coordinates; read-only
@@ -360,6 +362,8 @@ function glint.spheres(fields) end
 ---@class glint.cylinders: glint.shape_fields, glint.object
 ---@field capped boolean  closed at both ends
 ---@field count integer  number of cylinders; read-only
+---@field data glint.array  a copy of the numbers, a row of 7 for each cylinder; read-only
+---@field index glint.array?  as for spheres; read-only
 ---@field materials glint.material[]  a new list of the materials; read-only
 ---@field min glint.vector  as of spheres; read-only
 ---@field max glint.vector  as of spheres; read-only
@@ -392,6 +396,11 @@ function glint.cylinders(fields) end
 ---@field shading glint.shading
 ---@field terminator number  0 .. 1
 ---@field count integer  number of triangles; read-only
+---@field vertices glint.array  a copy of the vertices, a row x, y, z for each, before the transform; read-only
+---@field faces glint.array  the triangles, a row of three numbers of vertices for each; faces with more corners are cut; read-only
+---@field normals glint.array?  the given normals, of length 1: a row for each vertex, or for each corner of the triangles; { 0, 0, 0 } where a file has none; nil without normals; read-only
+---@field uv glint.array?  the texture coordinates u, v in the same order; nil: there are none; read-only
+---@field index glint.array?  the number of each triangle's material in `materials`; nil: all have the first; read-only
 ---@field materials glint.material[]  all materials; for a mesh from a file, the materials that its faces use. The list is read-only, but the fields of its materials can be set
 ---@field min glint.vector  the corner of the smallest coordinates of the box around the vertices, before the transform; read-only
 ---@field max glint.vector  the corner of the largest coordinates; read-only

@@ -283,7 +283,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
         glint_error error;
         if (glintL_orbit_plan(scene, &render.orbit, &render.desc, NULL, &run->explain_plan, &error))
             return glintL_error(L, PATH "%s", error.message);
-        glintL_run_keep_scene(run, scene, &render);
+        glintL_run_keep_scene(L, run, scene, &render);
         return glintL_stop_script(L);
     }
     if (run->keeps_scene && run->count == run->explain_frame - 1) {

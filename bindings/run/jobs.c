@@ -348,7 +348,7 @@ static void explain_frame(glintL_walk *walk, int64_t n)
     const bool keeps = run->keeps_scene && walk->job->frames > 1;
     glintL_work *next = keeps ? glintL_walk_plan(walk, n > 1 ? n - 1 : 2, run->explain_frame) : NULL;
     glintL_work *work = keeps && !next ? NULL : glintL_walk_plan(walk, n, run->explain_frame);
-    if (work && walk->job->kind == GLINTL_JOB_SWEEP && !run->keeps_scene) {
+    if (work && walk->job->kind == GLINTL_JOB_SWEEP && !run->keeps_scene && !run->see_scene) {
         run->explain_order = malloc(sizeof *run->explain_order);
         if (run->explain_order) {
             glintL_order_init(run->explain_order);
@@ -359,7 +359,7 @@ static void explain_frame(glintL_walk *walk, int64_t n)
     if (work && show_moments(walk, n)) {
         run->explain_plan = work->plan;
         work->plan = NULL;
-        glintL_run_keep_scene(run, glintL_walk_scene(walk), &walk->render);
+        glintL_run_keep_scene(walk->L, run, glintL_walk_scene(walk), &walk->render);
     }
     if (next) {
         run->retained_neighbour = next->plan;

@@ -135,7 +135,7 @@ static void push_own(lua_State *L)
 {
     static const luaL_Reg tools[] = {
         { "refuse", refuse },         { "raise", raise_message },       { "bad_key", bad_key }, { "check_list", check_list },
-        { "read_number", read_number }, { "is_object", is_object }, { "spell_number", spell_number },
+        { "read_number", read_number }, { "is_object", is_object }, { "spell_number", spell_number }, { "fields", glintL_list_fields },
         { "no_such_field", no_such_field }, { "is_vector", is_vector }, { "vector", vector }, { "note", note },             { "fail_run", fail_run },     { "is_readable", is_readable },   { NULL, NULL },
     };
     luaL_checkstack(L, 8, "modules");

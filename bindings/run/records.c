@@ -90,8 +90,10 @@ void glintL_run_reset(glintL_run *run)
         run->request.sets[i].is_known = false;
 }
 
-void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render)
+void glintL_run_keep_scene(lua_State *L, glintL_run *run, glint_scene *scene, const glintL_render *render)
 {
+    if (run->see_scene)
+        run->see_scene(L, scene, render);
     if (!run->keeps_scene)
         return;
     run->retained_scene = glint_scene_retain(scene);

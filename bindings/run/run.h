@@ -312,6 +312,8 @@ struct glintL_run {
     int64_t explain_frame;
     glint_plan *explain_plan; ///< owned
     struct glintL_order *explain_order; ///< owned; order of the sweep that contains the frame; NULL: no sweep
+    /// Called with the scene of the explained frame, in the script's state; must not raise. NULL: not called
+    void (*see_scene)(lua_State *L, glint_scene *scene, const glintL_render *render);
     bool keeps_scene; ///< keeps the scene of the explained frame and sets the next three fields
     glint_scene *retained_scene; ///< owned; the scene at that frame
     glintL_render retained_render;
@@ -399,8 +401,8 @@ void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZ
 /// Returns the exit code for an engine's error.
 int glintL_run_exit_code(glint_status status);
 bool glintL_run_open(glintL_run *run, glint_error *error); ///< makes the renderer and the writer
-/// Stores the scene of the explained frame, if the run requests it.
-void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render);
+/// Shows or stores the scene of the explained frame, if the run requests it.
+void glintL_run_keep_scene(lua_State *L, glintL_run *run, glint_scene *scene, const glintL_render *render);
 /// Adds a record, which is reported in order. False: out of memory, and the run has failed.
 glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
 /// Reports completed frames; with `wait`, waits for all. False: the run has failed.

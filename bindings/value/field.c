@@ -281,13 +281,15 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
 
 // ---- One value out ----
 
-// Converts to degrees, with the fewest digits that give the same radians, so that 40 reads back as 40.
+// Converts to degrees that give the same radians, with few digits, so that 40 reads back as 40.
 static double to_degrees(double radians)
 {
     char text[32];
     double degrees = radians * 180 / PI;
     snprintf(text, sizeof text, "%.15g", degrees);
     double tidy = strtod(text, NULL);
+    for (int i = 0; i < 8 && tidy * PI / 180 != radians; i++) // 4 neighbours on each side
+        tidy = i < 4 ? nextafter(i ? tidy : degrees, HUGE_VAL) : nextafter(i > 4 ? tidy : degrees, -HUGE_VAL);
     return tidy * PI / 180 == radians ? tidy : degrees;
 }
 

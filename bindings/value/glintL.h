@@ -345,6 +345,10 @@ int glintL_push_numbered(lua_State *L, const glintL_class *class, const void *ob
 int glintL_count_objects(lua_State *L);
 int glintL_list_objects(lua_State *L);
 int glintL_pairs(lua_State *L);
+/// fields(object): returns a list of { name, value, default, has_program } for the fields that are set on the object
+/// itself. Values are numbers without derivatives, and patterns. `has_program` is true if a program replaces the value,
+/// but no pattern of the script, such as a texture of a mesh's file.
+int glintL_list_fields(lua_State *L);
 
 /// Defines get, set, retain, release and create for a class whose objects have a description glint_NAME_desc.
 #define GLINTL_FUNCTIONS(name) \
@@ -396,6 +400,7 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
 /// rows.c: glint._rows(name): returns a list of { name, type, doc, unit, follows, required, takes_variable, default }
 /// for each field. The list is empty if the object has no table in the engine.
 int glintL_list_rows(lua_State *L);
+void glintL_push_default(lua_State *L, const glintL_field *field); ///< nil: the field has no default value
 void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< adds a variant to that list
 /// Pushes the result of glint._fields(): variant -> name -> "field" or "method".
 void glintL_push_listed(lua_State *L);

@@ -1,4 +1,6 @@
 // The objects of scenes and groups, by number, and the iteration over the members of any object.
+#include <string.h>
+
 #include "bindings/value/glintL.h"
 
 int glintL_push_numbered(lua_State *L, const glintL_class *class, const void *object, lua_Integer number)
@@ -91,4 +93,53 @@ int glintL_pairs(lua_State *L)
     lua_pushcclosure(L, next_member, 1);
     lua_pushvalue(L, 1);
     return 2;
+}
+
+// Pushes the value of a field of the object at 1; nil if the field is not set. Returns whether a program that has no
+// pattern in Lua, such as a texture of a mesh's file, replaces the value.
+static bool push_own(lua_State *L, const glintL_class *class, const glintL_field *field)
+{
+    union {
+        max_align_t align;
+        char bytes[GLINTL_DESC_SIZE];
+    } desc;
+    const glint_program *program = NULL;
+    if (field->program_offset && glintL_push_kept(L, 1, field->name))
+        return false;
+    class->get(glintL_check_object(L, 1, class->type), &desc);
+    if (field->program_offset)
+        memcpy(&program, desc.bytes + field->program_offset, sizeof program);
+    if (field->type == GLINT_TYPE_OBJECT)
+        lua_getfield(L, 1, field->name);
+    else
+        glintL_push_field(L, field, &desc);
+    return program;
+}
+
+int glintL_list_fields(lua_State *L)
+{
+    const glintL_class *class = class_of_argument(L);
+    lua_settop(L, 1);
+    if (!class)
+        return glintL_refuse(L, 1, "", "object");
+    const glintL_variant *variant = class->variant(glintL_check_object(L, 1, class->type));
+    lua_newtable(L);
+    for (const glintL_field *field = glintL_fields_of(variant); field && field->name; field++) {
+        const bool has_program = push_own(L, class, field);
+        lua_createtable(L, 4, 0);
+        lua_pushstring(L, field->name);
+        lua_rawseti(L, 4, 1);
+        if (variant->kind && !field->required && !field->set_offset) {
+            glintL_push_default(L, field);
+            lua_rawseti(L, 4, 3);
+        }
+        lua_pushboolean(L, has_program);
+        lua_rawseti(L, 4, 4);
+        lua_pushvalue(L, 3);
+        lua_rawseti(L, 4, 2);
+        if (has_program || !lua_isnil(L, 3))
+            lua_rawseti(L, 2, (lua_Integer)lua_rawlen(L, 2) + 1);
+        lua_settop(L, 2);
+    }
+    return 1;
 }

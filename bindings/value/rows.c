@@ -3,7 +3,7 @@
 
 #include "bindings/value/glintL.h"
 
-static void push_default(lua_State *L, const glintL_field *field)
+void glintL_push_default(lua_State *L, const glintL_field *field)
 {
     glintL_field plain = *field;
     union {
@@ -58,7 +58,7 @@ static void push_row(lua_State *L, const glintL_field *field)
     glintL_set_text(L, "follows", field->follows);
     glintL_set_flag(L, "required", field->required);
     glintL_set_flag(L, "takes_variable", (field->takes & GLINT_TAKES_VARIABLE) != 0);
-    push_default(L, field);
+    glintL_push_default(L, field);
     lua_setfield(L, -2, "default");
     if (field->type == GLINT_TYPE_TABLE)
         push_rows(L, field->parts);

@@ -369,7 +369,7 @@ io.stderr:write(P.mode, " ", tostring(P.shiny), ", ") return require("scene").sc
     exits 0 "--passes all" one.lua --size 8x8 --passes all -o all.png
     check "--passes all" eval 'test -s all.depth.png && test -s all.refined.png && test -s all.mirror.png'
     clean
-    for verb in render explain describe compare sheet assemble join reproduce new cost watch completion; do
+    for verb in render explain dump describe compare sheet assemble join reproduce new cost watch completion; do
         exits 0 "$verb --help" $verb --help
         prints "$verb --help" "^usage: glint $verb "
         mv out by_option

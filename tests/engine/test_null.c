@@ -258,6 +258,8 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_sphere_mesh_create(NULL, 0, 0, NULL, NULL, NULL));
     NOTHING(glint_mesh_bend(NULL));
     NOTHING(glint_sphere_mesh_get(NULL, NULL, NULL, NULL));
+    NOTHING(glint_mesh_get(NULL, NULL));
+    NOTHING(glint_shape_has_material(NULL));
     INVALID(glint_overlay_create(NULL, NULL, NULL));
     INVALID(glint_overlay_set(NULL, NULL, NULL));
     NOTHING(glint_overlay_get(NULL));

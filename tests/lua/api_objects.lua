@@ -144,7 +144,7 @@ function tests.spheres()
   raises("spheres.material: these spheres have a list of materials; change the fields of the materials in the list",
     function() s.material = red end)
   raises("spheres.count: this field is read-only", function() s.count = 5 end)
-  raises("spheres.data: no such field", function() return s.data end)
+  raises("spheres.points: no such field", function() return s.points end)
   local function wrong(expected, t) raises("spheres" .. expected, function() glint.spheres(t) end) end
   wrong(".data: array, flat table or packed string of x, y, z, radius expected, got nil", {})
   wrong(".data: array, flat table or packed string of x, y, z, radius expected, got 5", { data = 5 })

@@ -165,6 +165,35 @@ function tests.shapes()
   check(want == pictures(mesh(glint.array({ 1, 2, 3, 1, 3, 4 }, "integer"))), "faces of a mesh in a flat array")
   face_index.index = glint.array({ 1, 2 }, "integer")
   check(want == pictures(mesh(faces)), "materials of faces in an array")
+  local cut = mesh(faces)
+  check(tostring(cut.index) == tostring(face_index.index) and cut.count == 2, "materials of faces")
+  local polygon = { { 1, 2, 3, 4 } }
+  local quad = glint.mesh { vertices = square, faces = polygon, normals = { 0, 0, 5, 0, 3, 4, 0, 0, 1, 1, 0, 0 }, uv = { 0, 0, 1, 0, 1, 1, 0, 0.25 } }
+  local function spell(array)
+    local out = {}
+    for i = 1, #array do
+      for j = 1, array.width do out[#out + 1] = ("%g"):format(array[i][j]) end
+    end
+    return table.concat(out, " ")
+  end
+  check(spell(quad.faces) == "1 2 3 1 3 4" and #quad.vertices == 4, "triangles of a face of four corners")
+  check(spell(quad.normals) == "0 0 1 0 0.6 0.8 0 0 1 1 0 0", "normals have length 1: " .. spell(quad.normals))
+  check(spell(quad.uv) == "0 0 1 0 1 1 0 0.25" and not quad.index, "texture coordinates")
+  local corner = glint.mesh { vertices = square, faces = { 1, 2, 3, 1, 3, 4 }, normals = { 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1, 0, -1, 0, -1, 0, 0 } }
+  check(spell(corner.normals) == "0 0 1 0 1 0 1 0 0 0 0 -1 0 -1 0 -1 0 0" and not corner.uv, "a normal a corner")
+  local smooth = glint.mesh { vertices = square, faces = polygon, shading = "phong" }
+  check(not smooth.normals, "computed normals are not given ones")
+  local rod = glint.cylinders { data = { 0, 0, 0, 1, 0, 0, 0.5 } }
+  check(spell(rod.data) == "0 0 0 1 0 0 0.5" and spell(glint.spheres { data = { 1, 2, 3, 4 } }.data) == "1 2 3 4", "numbers of many shapes")
+  raises("mesh.vertices: this field is read-only", function() quad.vertices = square end)
+  local view = glint.camera { eye = { 0, 0, 1 }, at = { 0, 0, 0 } }
+  for i = 1, 2000 do -- degrees that read back as the same radians
+    view.fov = 1 + 170 * (i * 0.618033988749895 % 1)
+    local twin = glint.camera { eye = { 0, 0, 1 }, at = { 0, 0, 0 }, fov = view.fov }
+    local x, y = view:project({ 0.1, 0.37, 0 }, 1000, 999)
+    local u, v = twin:project({ 0.1, 0.37, 0 }, 1000, 999)
+    if x ~= u or y ~= v then check(false, "fov reads back: " .. view.fov) end
+  end
   raises("mesh.faces[2]: vertex 1 .. 4 expected, got 5", mesh, glint.array({ { 1, 2, 3 }, { 1, 3, 5 } }, "integer"))
   raises("mesh.faces: list of faces, array of three integers a row", mesh, glint.array(faces))
   raises("mesh.faces: 3 numbers a triangle expected, got 4 numbers", mesh, glint.array({ 1, 2, 3, 4 }, "integer"))

@@ -149,7 +149,7 @@ glint_status glint_cylinders_create(const glint_spheres_desc *desc, glint_shape 
 
 const double *glint_spheres_data(const glint_shape *shape)
 {
-    return shape && shape->desc.kind == GLINT_SHAPE_SPHERES ? shape->items : NULL;
+    return shape ? shape->items : NULL;
 }
 
 const uint32_t *glint_spheres_index(const glint_shape *shape) { return shape ? shape->index : NULL; }

@@ -38,6 +38,7 @@ static glint_status make_normals(glint_mesh *mesh, glint_error *error)
         if (!is_zero(normals[i]))
             vec_normalize(normals[i], normals[i]);
     mesh->normals = normals;
+    mesh->averaged = true;
     return GLINT_OK;
 }
 
@@ -151,4 +152,23 @@ double glint_mesh_bend(const glint_shape *shape)
     if (mesh->bend == 0)
         mesh->bend = acos(fmin(least, 1));
     return mesh->bend;
+}
+
+bool glint_mesh_get(const glint_shape *shape, glint_mesh_data *out)
+{
+    const glint_mesh *mesh = shape && out ? shape->mesh : NULL;
+    if (!mesh)
+        return false;
+    *out = (glint_mesh_data) {
+        .vertices = *mesh->vertices,
+        .vertex_count = mesh->vertex_count,
+        .triangles = *mesh->triangles,
+        .triangle_count = mesh->triangle_count,
+        .normals = mesh->normals && !mesh->averaged ? *mesh->normals : NULL,
+        .normal_corners = mesh->triangle_normals ? *mesh->triangle_normals : NULL,
+        .uv = mesh->uv ? *mesh->uv : NULL,
+        .uv_corners = mesh->triangle_uv ? *mesh->triangle_uv : NULL,
+        .faces = mesh->faces,
+    };
+    return true;
 }

@@ -39,6 +39,7 @@ typedef struct glint_mesh {
     double (*normals)[3]; ///< normals of length 1, or 0 for no normal; NULL: there are none
     uint32_t (*triangle_normals)[3]; ///< indices of the normals of each triangle's corners; NULL: equal to the vertex
         ///< indices
+    bool averaged; ///< the normals were computed from the faces
     double (*uv)[2]; ///< texture coordinates; NULL: there are none
     uint32_t (*triangle_uv)[3]; ///< indices of the uv pairs of each triangle's corners; NULL: equal to the vertex
         ///< indices

@@ -1,5 +1,6 @@
 #include "engine/base/hash.h"
 #include "engine/base/status.h"
+#include "engine/glint_inspect.h"
 #include "engine/render/scene/fields.h"
 #include "engine/render/scene/objects.h"
 
@@ -263,6 +264,8 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     shape->revision = next_revision();
     return GLINT_OK;
 }
+
+bool glint_shape_has_material(const glint_shape *shape) { return shape && shape->dressed; }
 
 const glint_shape_desc *glint_shape_get(const glint_shape *shape) { return shape ? &shape->desc : NULL; }
 
