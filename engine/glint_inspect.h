@@ -297,6 +297,12 @@ typedef struct glint_reflection {
 glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
                                      const double to_eye[3], glint_reflection *out, glint_error *error);
 
+// ---- Reuse -----------------------------------------------------------------------------------------------------------
+
+/// Makes a renderer cache the hits of every frame, also of the first one with its view, for a program in which someone
+/// changes one value after the other. By default the second frame with a view caches them. The pictures are the same.
+void glint_renderer_cache_hits(glint_renderer *renderer);
+
 // ---- What pictures depend on -----------------------------------------------------------------------------------------
 
 /// Writes a hash of everything that the samples of a plan's picture depend on.

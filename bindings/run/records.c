@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bindings/run/film.h"
+#include "engine/glint_inspect.h"
 
 // Limit for pictures waiting to be encoded, and for files waiting to be written. Two waiting pictures, the one being
 // encoded and the one being rendered are the four pictures whose memory a renderer retains (render.c).
@@ -155,6 +156,8 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     if (status)
         return status;
     run->renderer_threads = run->request.threads;
+    if (run->mode == GLINTL_MODE_WATCH)
+        glint_renderer_cache_hits(renderer);
     run->renderer = renderer; // from now on a signal can cancel it
     if (run->interrupted)
         glint_renderer_cancel(renderer);

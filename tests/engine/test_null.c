@@ -309,6 +309,7 @@ static void test_null_of_every_function(void **state)
     NOTHING(glint_renderer_threads(NULL));
     glint_renderer_cancel(NULL);
     NOTHING(glint_renderer_progress(NULL));
+    glint_renderer_cache_hits(NULL);
     INVALID(glint_render(NULL, NULL, NULL, NULL, NULL));
     NOTHING(glint_image_retain(NULL));
     glint_image_release(NULL);

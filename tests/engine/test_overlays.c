@@ -433,6 +433,60 @@ static void test_page(void **state)
     drop_world(&w);
 }
 
+/// Returns the overlays of a scene with one overlay as SVG for a page of the picture's size.
+static char *one_on_page(const glint_overlay_desc *desc, double least)
+{
+    world w = make_world(desc, 1);
+    glint_plan *plan = NULL;
+    glint_image *image = NULL;
+    assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+    assert_int_equal(glint_render(w.renderer, plan, &image, NULL, NULL), GLINT_OK);
+    char *svg = svg_on_page(image, 1, least);
+    glint_image_release(image);
+    glint_plan_destroy(plan);
+    drop_world(&w);
+    return svg;
+}
+
+/// Stores the smallest and the largest value of an attribute, which is written with its quotation mark: ` y="`.
+static void span_of(const char *svg, const char *attribute, double span[2])
+{
+    span[0] = INFINITY;
+    span[1] = -INFINITY;
+    for (const char *at = svg; (at = strstr(at, attribute)) != NULL; at++) {
+        const double value = atof(at + strlen(attribute));
+        span[0] = fmin(span[0], value);
+        span[1] = fmax(span[1], value);
+    }
+}
+
+/// A formula that is wider than the page breaks before a sign outside its fences. A bar becomes shorter.
+static void test_fit(void **state)
+{
+    (void)state;
+    glint_overlay_desc label = glint_overlay_desc_default(GLINT_OVERLAY_LABEL), bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
+    double x[2], y[2];
+    snprintf(label.text, sizeof label.text, "$a = b\\,(c + d) + e + f + (g - h) - i$");
+    char *whole = one_on_page(&label, 0), *broken = one_on_page(&label, 13);
+    span_of(whole, "<text x=\"", x);
+    assert_true(x[1] > WIDTH); // 13 pixels are more than a script without a size gets
+    span_of(broken, "<text x=\"", x);
+    assert_true(x[0] >= 0 && x[1] < WIDTH - 5);
+    span_of(whole, " y=\"", y);
+    assert_float_equal(y[0], y[1], 0);
+    span_of(broken, " y=\"", y);
+    assert_true(y[1] - y[0] >= 13 && y[1] - y[0] < 2 * 13 + 1); // two lines
+    assert_null(strchr(broken, '$'));
+    free(whole);
+    free(broken);
+    bar.low = 0;
+    bar.high = 1;
+    char *fits = one_on_page(&bar, 13);
+    span_of(fits, " y=\"", y);
+    assert_true(y[0] >= 0 && y[1] <= HEIGHT); // ten font sizes are 130 pixels
+    free(fits);
+}
+
 /// A changed text changes the key of beauty and the bytes of the file, and runs no stage again. The planes, the other
 /// passes and their keys stay the same. The earlier picture is unchanged.
 static void test_reuse(void **state)
@@ -575,7 +629,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
         cmocka_unit_test(test_axes),    cmocka_unit_test(test_box_axes), cmocka_unit_test(test_box_outside),
-        cmocka_unit_test(test_region),  cmocka_unit_test(test_page),       cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_region),  cmocka_unit_test(test_page), cmocka_unit_test(test_fit),       cmocka_unit_test(test_reuse),
         cmocka_unit_test(test_writer),  cmocka_unit_test(test_key),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

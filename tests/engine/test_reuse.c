@@ -13,6 +13,7 @@
 
 #include "engine/base/alloc.h"
 #include "engine/film/image.h"
+#include "engine/glint_inspect.h"
 #include "engine/render/stages/stages.h"
 #include "engine/render/tile/tile.h"
 #include "tests/engine/cases/step.h"
@@ -606,7 +607,8 @@ static double seconds(void)
 
 /// Renders after each of many edits with two renderers, one of which reuses nothing. adaptive: most frames take all
 /// samples only for some pixels.
-static void edits(size_t memory, int threads, bool adaptive, double limit_s)
+/// is_eager: hits are cached from the first frame on.
+static void edits(size_t memory, int threads, bool adaptive, bool is_eager, double limit_s)
 {
     world w;
     glint_renderer *reusing, *fresh;
@@ -614,6 +616,8 @@ static void edits(size_t memory, int threads, bool adaptive, double limit_s)
     desc.threads = threads;
     desc.reuse_memory = memory;
     assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
+    if (is_eager)
+        glint_renderer_cache_hits(reusing);
     desc.no_reuse = true;
     assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
     make_world(&w);
@@ -670,22 +674,24 @@ static void reused_equals_fresh(void **unused)
 {
     (void)unused;
     state = seed(1);
-    edits(0, 2, false, limit_s(4));
+    edits(0, 2, false, false, limit_s(4));
+    edits(0, 2, false, true, limit_s(4));
 }
 
 static void reused_equals_fresh_of_chosen_pixels(void **unused)
 {
     (void)unused;
     state = seed(4);
-    edits(0, 2, true, limit_s(4));
-    edits(1000000, 2, true, limit_s(1));
+    edits(0, 2, true, false, limit_s(4));
+    edits(0, 2, true, true, limit_s(4));
+    edits(1000000, 2, true, false, limit_s(1));
 }
 
 static void reused_equals_fresh_without_memory(void **unused)
 {
     (void)unused;
     state = seed(2);
-    edits(1, 2, false, limit_s(1));
+    edits(1, 2, false, true, limit_s(1));
 }
 
 static void reused_equals_fresh_with_little_memory(void **unused)
@@ -693,7 +699,7 @@ static void reused_equals_fresh_with_little_memory(void **unused)
     (void)unused;
     state = seed(3);
     for (size_t memory = 20000; memory < 4000000; memory = memory * 3 / 2)
-        edits(memory, 8, false, limit_s(2) / 14);
+        edits(memory, 8, false, memory > 200000, limit_s(2) / 14);
 }
 
 /// Each call of shade sums a chunk of an area light's samples. An earlier light inside a closed ball reaches nothing
@@ -895,8 +901,8 @@ static void a_highlight_that_a_tile_does_not_show(void **unused)
 }
 
 /// Moves a light over several frames: hits are reused, and the pictures equal a fresh renderer's.
-/// adaptive: the threshold, with four samples per pixel; 0: off.
-static void move_the_light(double adaptive, int frames, glint_frame_stats *stats)
+/// adaptive: the threshold, with four samples per pixel; 0: off. is_eager: hits are cached from the first frame on.
+static void move_the_light(double adaptive, bool is_eager, int frames, glint_frame_stats *stats)
 {
     world w;
     glint_renderer *both[2];
@@ -910,6 +916,8 @@ static void move_the_light(double adaptive, int frames, glint_frame_stats *stats
     }
     w.render.adaptive = adaptive;
     w.render.samples = adaptive > 0 ? 4 : w.render.samples;
+    if (is_eager)
+        glint_renderer_cache_hits(both[0]);
     for (int frame = 0; frame < frames; frame++) {
         glint_light_desc lamp = *glint_light_get(w.lights[0]);
         lamp.position[0] = lamp.direction[0] = 0.01 * frame;
@@ -924,9 +932,13 @@ static void hits_under_a_moved_light_are_kept(void **unused)
 {
     (void)unused;
     glint_frame_stats stats;
-    move_the_light(0, 5, &stats);
+    move_the_light(0, false, 5, &stats);
     assert_true(reused_share(&stats, "cast") == 1);
-    move_the_light(0.1, 9, &stats); // this run reuses the hits of the first sample of each pixel
+    move_the_light(0, false, 2, &stats);
+    assert_true(reused_share(&stats, "cast") == 0);
+    move_the_light(0, true, 2, &stats);
+    assert_true(reused_share(&stats, "cast") == 1);
+    move_the_light(0.1, false, 9, &stats); // this run reuses the hits of the first sample of each pixel
     assert_true(reused_share(&stats, "cast") > 0);
 }
 

@@ -223,6 +223,26 @@ await test("layers: the command's picture without overlays, and the overlays for
   job.close()
 })
 
+await test("layers: one factor for all letters of a narrow page, and space for a chart's curves", async () => {
+  const figure = `local glint = require "glint"
+    return glint.animation { frames = 1, width = 800, height = 450, scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
+      glint.label { text = "$k_s$", size = 18, at = "top" }, glint.label { text = "plain $k_s$", at = "bottom" },
+      glint.chart { extent = { 300, 200 }, at = "right", title = "t", x = { 0, 1 }, y_label = "y", series = { { y = { 0, 1 } } } } } }`
+  const job = await (await load({ font: true })).open(figure, { name: "sizes.lua" })
+  const marks = async (width, height, least) => (await job.render({ samples: 1, layers: { width, height, least } })).marks
+  const sizesOf = svg => [...svg.matchAll(/font-size="([\d.]+)"[^>]*>(k|plain)/g)].map(found => Number(found[1]))
+  const curve = svg => [...svg.matchAll(/<path d="M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)/g)].map(found => found.slice(1).map(Number)).map(([a, b, c, d]) => [c - a, b - d])
+  // 450 / 36 points are 12.5 pixels of the script's picture
+  for (const width of [800, 400, 320]) {
+    const found = sizesOf(await marks(width, 450 * width / 800, 12)), factor = Math.max(width / 800, 14 / 12.5)
+    for (const [i, own] of [18, 12.5].entries()) assert(Math.abs(found[i] - factor * own) < 0.01, `letters of ${found} on a page of ${width}`)
+  }
+  const [[whole]] = curve(await marks(800, 450, 0)), [[half]] = curve(await marks(400, 225, 12))
+  assert(half > 0.45 * whole, `curves ${half} wide on half a page, ${whole} on the whole`)
+  assert(!(await marks(60, 34, 12)).includes("<rect"), "no paper without curves")
+  job.close()
+})
+
 // ---- Steps ----
 
 const soft = fs.readFileSync("tests/web/soft.lua", "utf8")

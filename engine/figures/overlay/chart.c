@@ -128,6 +128,14 @@ void glint_chart_measure(glint_layout *layout)
     const glint_overlay_desc *desc = layout->desc;
     layout->width = (int)layout->extent[0] - (desc->has_extent ? 0 : 2 * layout->padding);
     layout->height = (int)layout->extent[1] - (desc->has_extent ? 0 : 2 * layout->padding);
+    const double growth = 1 - 1 / layout->overlays->enlarged;
+    if (!desc->has_extent || growth <= 0)
+        return;
+    // Larger letters take space around the curves. The curves' area keeps its size.
+    const chart c = make_chart(layout, 0, 0);
+    const double most[2] = { layout->overlays->width - layout->em, layout->overlays->height - layout->em };
+    layout->width = (int)fmax(layout->width, fmin(layout->width + growth * (layout->width - c.area.width), most[0]));
+    layout->height = (int)fmax(layout->height, fmin(layout->height + growth * (layout->height - c.area.height), most[1]));
 }
 
 static bool has_area(const chart *c) { return c->area.width >= c->gap && c->area.height >= c->gap; }

@@ -6,9 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_SIZE 10.0 ///< smallest default font size, unless the page has one; pixels
-#define SCRIPT_RATIO (7 / 6.0) ///< on a page with a smallest size: default size in sizes of the smallest scripts
-#define SIZE_SHARE 36.0 ///< the default font size is the picture's height divided by this
 #define PADDING 0.35 ///< between the text and the border of its background, in font sizes
 
 /// Breaks the lines of a label that are wider than the picture without its margins. Lines break at spaces outside
@@ -50,12 +47,11 @@ glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_over
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5, [GLINT_OVERLAY_CHART] = 0 };
     glint_layout layout = { .overlays = overlays, .desc = desc, .dpi = dpi, .ink = ink };
-    const double least = desc->has_size ? overlays->least : overlays->least > 0 ? SCRIPT_RATIO * overlays->least : LEAST_SIZE;
-    layout.em = fmax(desc->has_size ? glint_layout_pixels(desc->size, dpi) : overlays->height / SIZE_SHARE, least);
+    layout.em = overlays->enlarged * glint_layout_own_size(overlays, desc, dpi);
     layout.typeface = glint_typeface_open(ink->letters, layout.em);
     layout.typeface.least = overlays->least;
     if (desc->kind != GLINT_OVERLAY_LABEL)
-        layout.length = desc->has_length ? glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;
+        layout.length = desc->has_length ? overlays->enlarged * glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;
     layout.padding = desc->has_background ? (int)ceil(PADDING * layout.em) : 0;
     memcpy(layout.text, desc->text, sizeof layout.text);
     return layout;
@@ -91,10 +87,12 @@ void glint_layout_place(glint_layout *layout, double dpi)
     const bool points = glint_overlay_points(desc);
     if (points || (desc->kind == GLINT_OVERLAY_LABEL && !desc->has_position))
         wrap(layout, margin);
+    if (layout->overlays->least > 0)
+        glint_layout_fit_text(layout);
     for (int i = 0; i < 2; i++)
         layout->extent[i] = desc->has_extent ? glint_layout_pixels(desc->extent[i], dpi) : sides[i] - 2 * margin;
     if (desc->kind == GLINT_OVERLAY_COLORBAR)
-        glint_colorbar_measure(layout);
+        glint_layout_measure_bar(layout, margin);
     else if (desc->kind == GLINT_OVERLAY_AXES)
         glint_axes_measure(layout);
     else if (desc->kind == GLINT_OVERLAY_CHART)
@@ -141,6 +139,8 @@ static void draw(glint_layout *layout, double dpi)
         return;
     }
     glint_layout_place(layout, dpi);
+    if (desc->kind == GLINT_OVERLAY_CHART && layout->overlays->least > 0 && !glint_chart_fits(layout))
+        return;
     if (glint_overlay_points(desc)) {
         glint_pointer_draw(layout, dpi);
         if (!glint_pointer_shows_text(layout))
@@ -173,7 +173,7 @@ glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, gli
 
 void glint_colorbar_measure_alone(const glint_overlay_desc *desc, glint_ink *ink, int size[2])
 {
-    const glint_overlays overlays = { .width = ink->width, .height = ink->height };
+    const glint_overlays overlays = { .width = ink->width, .height = ink->height, .scale = 1, .enlarged = 1 };
     glint_layout layout = glint_layout_begin(&overlays, desc, 0, ink);
     glint_colorbar_measure(&layout);
     size[0] = layout.width;
@@ -182,7 +182,7 @@ void glint_colorbar_measure_alone(const glint_overlay_desc *desc, glint_ink *ink
 
 void glint_colorbar_draw_alone(const glint_overlay_desc *desc, glint_ink *ink, int x, int y)
 {
-    const glint_overlays overlays = { .width = ink->width, .height = ink->height };
+    const glint_overlays overlays = { .width = ink->width, .height = ink->height, .scale = 1, .enlarged = 1 };
     glint_layout layout = glint_layout_begin(&overlays, desc, 0, ink);
     glint_colorbar_measure(&layout);
     glint_colorbar_draw(&layout, x, y);

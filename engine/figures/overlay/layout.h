@@ -36,6 +36,12 @@ glint_layout glint_layout_begin_at(const glint_overlays *overlays, size_t i, dou
 glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_ink *ink);
 /// Converts a length in points to pixels, at most the largest side of a picture.
 double glint_layout_pixels(double points, double dpi);
+/// Returns the size of an overlay's letters before overlays->enlarged; pixels.
+double glint_layout_own_size(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi);
+/// Breaks and shrinks the formulas of a text that is wider than the page.
+void glint_layout_fit_text(glint_layout *layout);
+/// Measures a colour bar. On a page, shortens a bar that is longer than the page.
+void glint_layout_measure_bar(glint_layout *layout, double margin);
 /// Measures an overlay and finds its position; for an overlay that points at the world, the position of its text. Not
 /// for axes at a box.
 void glint_layout_place(glint_layout *layout, double dpi);

@@ -5,6 +5,7 @@
 ///     overlays.c   all overlays of one frame, for a plan and its image; their key
 ///     hidden.c     the parts of curves, and the points of labels, that surfaces hide
 ///     layout.c     the position of each; colorbar.c, axes.c, box_axes.c: their parts
+///     fit.c        sizes for a page: legible letters, and texts and bars that fit the page
 ///     chart.c      charts; curves.c: their curves, which overlays share
 ///     marks.c      the round numbers along colour bars, axes and charts
 ///     pointer.c    the curves of arrows, lines, arcs and polylines in the picture, and positions for texts next to them
@@ -30,7 +31,9 @@ typedef struct glint_overlays {
     double view[3][3]; ///< unit vectors to the right, up and away from the eye
     glint_cover_camera camera;
     glint_key letters; ///< see glint_letters_key
-    double least; ///< smallest size of letters, pixels; 0: 10 for letters without a given size
+    double scale; ///< pixels per pixel of the script's own picture: 1, except on a page
+    double least; ///< smallest size of letters on a page, pixels; 0: none
+    double enlarged; ///< factor of all sizes, so that the smallest letters have the size `least`, >= 1
     glint_hidden_parts *hidden; ///< hidden parts of each overlay's curve; NULL: none are hidden, or they are not
         ///< known yet. Owned
     size_t count;
@@ -59,7 +62,10 @@ glint_overlays *glint_overlays_copy(const glint_overlays *overlays);
 /// factor  width and height of the page, in those of the picture.
 /// scale   factor of the positions of overlays, which are in pixels of the script's own picture.
 /// least   smallest size of letters, pixels.
-glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const double factor[2], double scale, double least);
+/// dpi     of the page; 0: not given.
+glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const double factor[2], double scale, double least, double dpi);
+/// Returns the factor of all sizes for which the letters have at least the size overlays->least, >= 1.
+double glint_overlays_enlargement(const glint_overlays *overlays, double dpi);
 
 /// Draws the overlays on a page of the size of the whole picture.
 /// dpi  pixels per inch; 0: not given.

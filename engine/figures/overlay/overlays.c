@@ -34,6 +34,7 @@ glint_status glint_overlays_take(glint_overlay *const *all, size_t count, int wi
     overlays->height = height;
     overlays->letters = font;
     overlays->least = 0;
+    overlays->scale = overlays->enlarged = 1;
     overlays->hidden = NULL;
     overlays->count = 0;
     for (int i = 0; i < 3; i++)
@@ -84,7 +85,7 @@ static bool copy_hidden(const glint_overlays *from, glint_overlays *to)
     return true;
 }
 
-glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const double factor[2], double scale, double least)
+glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const double factor[2], double scale, double least, double dpi)
 {
     glint_overlays *page = glint_overlays_copy(overlays);
     if (!page || !copy_hidden(overlays, page)) {
@@ -95,6 +96,7 @@ glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const doub
     page->width = (int)ceil(overlays->width * factor[0] - 0.5);
     page->height = (int)ceil(overlays->height * factor[1] - 0.5);
     page->least = least;
+    page->scale = scale;
     for (int i = 0; i < 2; i++) {
         vec_scale(page->camera.view[i], overlays->camera.view[i], 1 / factor[i]);
         page->camera.span[i] = overlays->camera.span[i] * factor[i];
@@ -103,6 +105,7 @@ glint_overlays *glint_overlays_resize(const glint_overlays *overlays, const doub
     for (size_t i = 0; i < page->count; i++)
         for (int c = 0; c < 2; c++)
             page->of[i].position[c] *= scale;
+    page->enlarged = glint_overlays_enlargement(page, dpi);
     return page;
 }
 

@@ -138,6 +138,41 @@ const char *glint_line_blank(const char *line, const char *at, const char *end)
     return NULL;
 }
 
+/// Returns the bytes of a token of a formula: a command, or one byte.
+static size_t token_size(const char *at)
+{
+    const size_t letters = *at == '\\' ? strspn(at + 1, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ") : 0;
+    return letters ? 1 + letters : *at == '\\' ? 2 : 1;
+}
+
+static bool is_token(const char *at, size_t size, const char *const *names)
+{
+    for (; *names; names++)
+        if (strlen(*names) == size && memcmp(at, *names, size) == 0)
+            return true;
+    return false;
+}
+
+const char *glint_line_operator(const char *line, const char *at, const char *end)
+{
+    static const char *const signs[] = { "=", "+", "-", "<", ">", "\\approx", "\\propto", "\\sim", "\\le", "\\leq", "\\ge", "\\geq", "\\to", NULL };
+    static const char *const opening[] = { "{", "(", "[", "\\left", NULL }, *const closing[] = { "}", ")", "]", "\\right", NULL };
+    const char *formula[2];
+    for (const char *from = line; find_formula(from, end, formula); from = formula[1] + 1) {
+        int depth = 0;
+        bool has_operand = false; // a sign without an operand before it belongs to the operand after it
+        for (const char *t = formula[0] + 1; t < formula[1]; t += token_size(t)) {
+            const size_t size = token_size(t);
+            const bool is_sign = is_token(t, size, signs);
+            depth += is_token(t, size, opening) - is_token(t, size, closing);
+            if (t >= at && is_sign && has_operand && depth == 0)
+                return t;
+            has_operand = *t == ' ' ? has_operand : !is_sign;
+        }
+    }
+    return NULL;
+}
+
 static void draw_rule(const glint_rule *rule, double x, double y, glint_mask *mask)
 {
     const double low[2] = { x + rule->x, y + rule->y }, high[2] = { low[0] + rule->width, low[1] + rule->height };

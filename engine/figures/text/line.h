@@ -39,6 +39,9 @@ glint_status glint_line_check(const char *name, const char *text, glint_error *e
 /// Returns the next blank of a line, from `at` to `end`, that is not part of a formula; NULL: none.
 /// line  the start of the line.
 const char *glint_line_blank(const char *line, const char *at, const char *end);
+/// Returns the next place of a line, from `at` to `end`, where a formula may be broken: before a relation, a plus or a
+/// minus that is outside all groups and fences; NULL: none.
+const char *glint_line_operator(const char *line, const char *at, const char *end);
 /// Draws a line into the mask. The left end of its baseline is at the upper edge of row y.
 void glint_line_draw(const glint_typeface *typeface, const glint_line *line, int x, int y, glint_mask *mask);
 

@@ -26,7 +26,7 @@ static glint_status check(const glint_page *page, glint_error *error)
 }
 
 /// Encodes the marks as a string.
-static glint_status encode(const glint_overlays *overlays, const glint_page *page, const double box[4], char **svg,
+static glint_status encode(const glint_overlays *overlays, const glint_page *page, double dpi, const double box[4], char **svg,
                            glint_error *error)
 {
     glint_ink ink;
@@ -34,7 +34,7 @@ static glint_status encode(const glint_overlays *overlays, const glint_page *pag
     glint_status status = glint_ink_open(overlays->width, overlays->height, &ink, error);
     if (status)
         return status;
-    status = glint_overlays_draw(overlays, (page->dpi > 0 ? page->dpi : 72) * page->scale, &ink, error);
+    status = glint_overlays_draw(overlays, dpi, &ink, error);
     if (!status)
         status = glint_svg_encode_marks(&ink, box, page->transfer, &bytes, error);
     glint_ink_close(&ink);
@@ -58,10 +58,11 @@ glint_status glint_image_overlays_svg(const glint_image *image, const glint_page
         return status;
     const double factor[] = { (double)page->width / image->width, (double)page->height / image->height };
     const double box[] = { image->part_x * factor[0], image->part_y * factor[1], page->width, page->height };
-    glint_overlays *overlays = glint_overlays_resize((const glint_overlays *)image->cover, factor, page->scale, page->least);
+    const double dpi = (page->dpi > 0 ? page->dpi : 72) * page->scale;
+    glint_overlays *overlays = glint_overlays_resize((const glint_overlays *)image->cover, factor, page->scale, page->least, dpi);
     if (!overlays)
         return glint_fail_nomem(error);
-    status = encode(overlays, page, box, svg, error);
+    status = encode(overlays, page, dpi, box, svg, error);
     glint_cover_release(&overlays->base);
     return status;
 }

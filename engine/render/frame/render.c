@@ -1,6 +1,7 @@
 /// Renders a frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancelling.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/glint_inspect.h"
 #include "engine/render/frame/render.h"
 #include "engine/render/frame/renderer.h"
 
@@ -91,6 +92,12 @@ void glint_renderer_destroy(glint_renderer *renderer)
 const char *glint_renderer_isa(const glint_renderer *renderer) { return renderer ? renderer->stages->name : NULL; }
 
 int glint_renderer_threads(const glint_renderer *renderer) { return renderer ? glint_pool_threads(renderer->pool) : 0; }
+
+void glint_renderer_cache_hits(glint_renderer *renderer)
+{
+    if (renderer)
+        renderer->reuse.is_eager = true;
+}
 
 void glint_renderer_cancel(glint_renderer *renderer)
 {

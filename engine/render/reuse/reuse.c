@@ -82,12 +82,13 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         glint_reuse_clear(reuse);
         make_slots(reuse, plan, tile_count, lights);
     }
-    reuse->caches_cast = glint_earlier_find_tiles(reuse, plan->keys[GLINT_STAGE_CAST]);
+    const bool is_eager = reuse->is_eager && !plan->base && !plan->is_base;
+    reuse->caches_cast = glint_earlier_find_tiles(reuse, plan->keys[GLINT_STAGE_CAST]) || is_eager;
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
     reuse->caches_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
     glint_splits_begin(&reuse->splits, plan);
-    reuse->caches_view = reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
+    reuse->caches_view = is_eager || reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
     reuse->view = plan->keys[GLINT_STAGE_VIEW];
     glint_earlier_lights(reuse, plan);
 }

@@ -109,6 +109,7 @@ typedef struct glint_earlier {
 
 typedef struct glint_reuse {
     bool on;
+    bool is_eager; ///< hits are cached in the first frame with their key
     size_t budget;
     size_t pictures; ///< bytes of the budget that whole pictures use, see glint_reuse_reserve
     size_t used; ///< bytes of the budget that tiles use
