@@ -115,8 +115,8 @@ endif
 # brings its own.
 OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
 PLAIN := -fno-stack-protector -U_FORTIFY_SOURCE
-# Kernels have line numbers only. Debug information of variables, after so much inlining, takes a third of the time of
-# a compilation and a fifth of its memory. KERNEL_CFLAGS="-O3 -g" adds it.
+# Optimized objects have line numbers only. Debug information of variables, few of which survive optimization, takes a
+# fifth of the time of a compilation, and a third of a kernel's. CFLAGS="-O0 -g" or LINES= have it.
 LINES := $(if $(filter -g%,$(CFLAGS)),-g1)
 ifeq ($(SANITIZE)$(WASM),)
   HARDEN      := -fstack-protector-strong $(if $(OPTIMIZED),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
@@ -285,7 +285,7 @@ $(BINDINGS_OBJ): | $(CARRIED) $(MODULES)
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) $(OWN_CALLS) $(ISA) $(OWN) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(if $(OPTIMIZED),$(LINES)) $(if $(filter $(KERNEL_OBJ),$@),$(PLAIN),$(HARDEN)) $(OWN_CALLS) $(ISA) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)

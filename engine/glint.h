@@ -18,9 +18,7 @@
 #ifndef GLINT_H
 #define GLINT_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "glint_types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -37,43 +35,7 @@ extern "C" {
 /// this header if the first number is equal and, while it is 0, the second, too.
 const char *glint_version(void);
 
-#define GLINT_NAME_SIZE 64 ///< bytes of an object's name, with the ending NUL
 #define GLINT_SIDE_MAX 65535 ///< longest side of an image, in pixels
-
-/// The result of a call that can fail.
-typedef enum glint_status {
-    GLINT_OK = 0, ///< done
-    GLINT_ERR_INVALID, ///< an argument is out of its range
-    GLINT_ERR_NOMEM, ///< out of memory; nothing was changed
-    GLINT_ERR_IO, ///< a failure of the system: a file that cannot be opened, a short write
-    GLINT_ERR_NO_SPACE, ///< disk or quota full; a later attempt may succeed
-    GLINT_ERR_FORMAT, ///< a file with invalid contents
-    GLINT_ERR_CANCELLED, ///< glint_renderer_cancel was called
-    GLINT_ERR_UNSUPPORTED ///< this machine or build cannot do it
-} glint_status;
-
-/// Why a call failed. Written only on failure.
-typedef struct glint_error {
-    glint_status status; ///< never GLINT_OK
-    char message[512]; ///< UTF-8, one line, begins with the argument's name
-} glint_error;
-
-// ---- Objects -------------------------------------------------------------------------------------------------------
-
-typedef struct glint_scene glint_scene; ///< shapes, lights and overlays, with one camera
-typedef struct glint_camera glint_camera; ///< where the eye is, where it looks and how wide
-typedef struct glint_light glint_light; ///< a source of light
-typedef struct glint_material glint_material; ///< how a surface reflects and transmits light
-typedef struct glint_shape glint_shape; ///< a surface, a solid, or a group of them
-typedef struct glint_program glint_program; ///< a pattern or a shader, see glint_programs.h; immutable
-typedef struct glint_overlay glint_overlay; ///< a label, an arrow, a chart over the picture, see glint_figures.h
-typedef struct glint_plan glint_plan; ///< the stages that one frame needs, with a snapshot of all data that they
-    ///< read; immutable, any thread
-typedef struct glint_renderer glint_renderer; ///< worker threads, and the cache between frames
-typedef struct glint_image glint_image; ///< a rendered picture: the planes of its passes, and its pixel values;
-    ///< immutable, reference counted, any thread
-typedef struct glint_frame_stats glint_frame_stats; ///< times and counts of a frame, see glint_inspect.h
-typedef struct glint_derivative glint_derivative; ///< of the picture with respect to a number, see glint_programs.h
 
 // ---- Scene ---------------------------------------------------------------------------------------------------------
 
@@ -678,7 +640,7 @@ typedef enum glint_pass {
     /// The first derivative of the frame, see glint_render_desc; the others follow it. Three channels
     GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT,
     /// The first light pass of the frame, see glint_render_desc; the others follow it. Three channels
-    GLINT_PASS_LIGHT = GLINT_PASS_DERIVATIVE + 8
+    GLINT_PASS_LIGHT = GLINT_PASS_DERIVATIVE + GLINT_DERIVATIVES_MAX
 } glint_pass;
 
 /// The passes in the order of glint_pass: PASS(ID, name, channels, LOOK) for each one. The look is how a picture shows
@@ -884,6 +846,11 @@ const char *glint_image_light_pass(const glint_image *image, size_t index);
 bool glint_image_is_black(const glint_image *image);
 /// Returns the exposure, in stops, that the frame's pixel values have or would have.
 double glint_image_exposure(const glint_image *image);
+
+/// Widens range[0] .. range[1] to the finite values of a pass: for depth, the nearest and farthest; for a derivative,
+/// plus and minus the largest slope of a channel. Starts as +inf, -inf. GLINT_ERR_INVALID: the image lacks that pass,
+/// or the pass is neither depth nor a derivative.
+glint_status glint_image_range(const glint_image *image, glint_pass pass, double range[2], glint_error *error);
 
 /// Reads one pixel of a stored pass; (0, 0) is the top left. One-channel passes give the same number three times.
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],

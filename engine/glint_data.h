@@ -2,7 +2,7 @@
 #ifndef GLINT_DATA_H
 #define GLINT_DATA_H
 
-#include "glint.h"
+#include "glint_types.h"
 
 #ifdef __cplusplus
 extern "C" {

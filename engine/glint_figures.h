@@ -2,7 +2,7 @@
 #ifndef GLINT_FIGURES_H
 #define GLINT_FIGURES_H
 
-#include "glint.h"
+#include "glint_types.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -2,6 +2,7 @@
 #ifndef GLINT_FILES_H
 #define GLINT_FILES_H
 
+#include "glint.h"
 #include "glint_figures.h"
 #include "glint_programs.h"
 

@@ -3,7 +3,7 @@
 #ifndef GLINT_INSPECT_H
 #define GLINT_INSPECT_H
 
-#include "glint.h"
+#include "glint_types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -276,10 +276,6 @@ typedef struct glint_brightness {
 /// Adds an image's linear beauty to *sum; counts clipping after `exposure` stops. GLINT_ERR_INVALID: the image has no
 /// linear beauty.
 glint_status glint_image_brightness(const glint_image *image, double exposure, glint_brightness *sum, glint_error *error);
-/// Widens range[0] .. range[1] to the finite values of a pass: for depth, the nearest and farthest; for a derivative,
-/// plus and minus the largest slope of a channel. Starts as +inf, -inf. GLINT_ERR_INVALID: the image lacks that pass,
-/// or the pass is neither depth nor a derivative.
-glint_status glint_image_range(const glint_image *image, glint_pass pass, double range[2], glint_error *error);
 /// Returns the greatest exposure, in whole hundredths of a stop within GLINT_EXPOSURE_MAX, at which light of `most`
 /// does not exceed 1; 0 if `most` is 0. The same on every machine.
 double glint_exposure_for(double most);
@@ -307,8 +303,8 @@ void glint_renderer_cache_hits(glint_renderer *renderer);
 
 /// Writes a hash of everything that the samples of a plan's picture depend on.
 void glint_plan_key(const glint_plan *plan, uint64_t key[2]);
-/// Extends a hash by what else the picture of one pass depends on: overlays, and options of its stages.
-void glint_plan_add_pass_key(const glint_plan *plan, glint_pass pass, uint64_t key[2]);
+/// Extends a hash by what else the picture of one pass, a glint_pass, depends on: overlays, and options of its stages.
+void glint_plan_add_pass_key(const glint_plan *plan, int pass, uint64_t key[2]);
 
 /// Calls `warns` for each overlay that the plan's picture cannot show as described: text outside the picture, lines
 /// wider than the picture, letters missing from the font, points behind the camera, an arrow of no length. The

@@ -2,8 +2,8 @@
 #ifndef GLINT_PROGRAMS_H
 #define GLINT_PROGRAMS_H
 
-#include "glint.h"
 #include "glint_math.h"
+#include "glint_types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -145,7 +145,6 @@ int glint_texture_height(const glint_texture *texture);
 
 // ---- Derivatives of pictures ---------------------------------------------------------------------------------------
 
-#define GLINT_DERIVATIVES_MAX (GLINT_PASS_LIGHT - GLINT_PASS_DERIVATIVE) ///< most derivatives of one frame
 #define GLINT_DERIVATIVE_NAME_SIZE 32 ///< bytes of a derivative's name, with the ending NUL
 
 /// The derivative of one field of the scene with respect to a parameter. At most one of the four objects is not NULL;

@@ -19,7 +19,7 @@ forbid() {
 includes() {
     files=$1
     shift
-    allowed="engine/glint(_math|_programs|_inspect)?\.h"
+    allowed="engine/glint(_types|_math|_programs|_inspect)?\.h"
     for name in "$@"; do allowed="$allowed|$name"; done
     # shellcheck disable=SC2086
     if grep -nE '^#include "' $files /dev/null | grep -vE "#include \"($allowed)(/[^/]*)?\""; then

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bindings/lua/many.h"
+#include "engine/glint.h"
 #include "engine/glint_data.h"
 
 typedef struct arguments {

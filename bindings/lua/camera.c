@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bindings/value/glintL.h"
+#include "engine/glint.h"
 
 typedef glint_camera_desc desc_type;
 

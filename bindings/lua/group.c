@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "bindings/value/glintL.h"
+#include "engine/glint.h"
 
 static glint_shape *check_group(lua_State *L, int index)
 {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bindings/lua/overlay.h"
+#include "engine/glint.h"
 
 // ---- Special fields ----
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bindings/lua/many.h"
+#include "engine/glint.h"
 
 typedef glint_shape_desc desc_type;
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bindings/lua/many.h"
+#include "engine/glint.h"
 #include "engine/glint_inspect.h"
 
 // Allocating an array may run a finalizer of the script, so that the shape is read again afterwards.

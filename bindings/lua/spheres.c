@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "bindings/lua/many.h"
+#include "engine/glint.h"
 
 #define ITEMS_MAX ((size_t)1 << 30)
 

@@ -1,6 +1,7 @@
 // Materials and scenes whose fields hold patterns. The userdata of such an object stores the patterns. The object gets
 // their programs each time that a frame is planned.
 #include "bindings/pattern/pattern.h"
+#include "engine/glint.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 // material:evaluate for a material with programs: runs them at one point, and uses the results as the fields' values.
 #include "bindings/pattern/pattern.h"
+#include "engine/glint.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,31 @@
 #ifndef GLINT_L_RENDER_FIELDS_H
 #define GLINT_L_RENDER_FIELDS_H
 
-#include "engine/glint.h"
+#include "engine/glint_files.h"
+
+/// A view turned by hand; see orbit.c. All 0: not turned.
+typedef struct glintL_orbit {
+    bool is_allowed; ///< a page may turn the view
+    double yaw, pitch; ///< degrees to the right and up
+    double zoom; ///< the distance to the target is divided by it, > 0; 0: as 1
+    double right, up; ///< shift of the picture, in its heights
+} glintL_orbit;
+
+/// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
+typedef struct glintL_render {
+    glint_render_desc desc;
+    char output[4096]; ///< "": not given
+    glint_encode encode;
+    int colormap; ///< colour map of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
+    double range[2]; ///< range of the colormap: see glint_write_desc
+    double dpi; ///< pixels per inch; 0: not given
+    uint32_t file_passes; ///< passes written to files in addition to beauty: bits 1u << GLINT_PASS_...
+    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the passes d:NAME to write
+    int derivative_count;
+    char light_passes[4096]; ///< names of the passes light:NAME to write, separated by commas; see glintL_render_point
+    glintL_orbit orbit;
+    double own_samples; ///< samples of a pixel before the limits of a preview
+} glintL_render;
 
 /// FIELD(name, kind, sort, member of glintL_render, least, most, words)
 /// OPTION(the same, value, help): a field whose option has the same name and is described completely by this row.

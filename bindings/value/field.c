@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bindings/value/glintL.h"
+#include "engine/glint.h"
 
 #define PATH_SIZE 192 // longer paths are cut in messages
 #define PI 0x1.921fb54442d18p+1

@@ -9,8 +9,6 @@
 #include <lauxlib.h>
 #include <lua.h>
 
-#include "engine/glint.h"
-#include "engine/glint_files.h"
 #include "engine/glint_inspect.h"
 #include "engine/glint_programs.h"
 
@@ -189,9 +187,10 @@ void glintL_open_dual(lua_State *L);
 
 // ---- transform.c: the immutable value of an affine map ----
 
-void glintL_push_transform(lua_State *L, const glint_transform *t);
+struct glint_transform;
+void glintL_push_transform(lua_State *L, const struct glint_transform *t);
 /// Returns NULL if the value at index is not a transform.
-const glint_transform *glintL_to_transform(lua_State *L, int index);
+const struct glint_transform *glintL_to_transform(lua_State *L, int index);
 
 // ---- pose.c: a camera's matrix. `parts` are the rows of eye, at, direction and up ----
 
@@ -448,30 +447,6 @@ int glintL_group_add(lua_State *L);
 int glintL_group_remove(lua_State *L);
 void glintL_group_push_at(lua_State *L, const void *group, size_t index);
 void glintL_group_fill(lua_State *L, int list, int index, const char *name);
-
-/// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
-/// A view turned by hand; see orbit.c. All 0: not turned.
-typedef struct glintL_orbit {
-    bool is_allowed; ///< a page may turn the view
-    double yaw, pitch; ///< degrees to the right and up
-    double zoom; ///< the distance to the target is divided by it, > 0; 0: as 1
-    double right, up; ///< shift of the picture, in its heights
-} glintL_orbit;
-
-typedef struct glintL_render {
-    glint_render_desc desc;
-    char output[4096]; ///< "": not given
-    glint_encode encode;
-    int colormap; ///< colour map of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
-    double range[2]; ///< range of the colormap: see glint_write_desc
-    double dpi; ///< pixels per inch; 0: not given
-    uint32_t file_passes; ///< passes written to files in addition to beauty: bits 1u << GLINT_PASS_...
-    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names of the passes d:NAME to write
-    int derivative_count;
-    char light_passes[4096]; ///< names of the passes light:NAME to write, separated by commas; see glintL_render_point
-    glintL_orbit orbit;
-    double own_samples; ///< samples of a pixel before the limits of a preview
-} glintL_render;
 
 // ---- state.c: the current run. One per lua_State, in the registry; plain Lua has one with no options ----
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bindings/value/glintL.h"
+#include "engine/glint.h"
 
 #define TRANSFORM "glint.transform"
 

@@ -2,7 +2,7 @@
 #ifndef GLINT_BASE_LIST_H
 #define GLINT_BASE_LIST_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// Start from { 0 }. `slots` is an open-addressing table of index + 1; 0 is free.
 typedef struct glint_list {

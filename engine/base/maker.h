@@ -2,7 +2,6 @@
 #ifndef GLINT_MAKER_H
 #define GLINT_MAKER_H
 
-#include "engine/glint.h"
 #include "engine/glint_math.h"
 #include "engine/glint_programs.h"
 

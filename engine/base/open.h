@@ -2,7 +2,7 @@
 #ifndef GLINT_BASE_OPEN_H
 #define GLINT_BASE_OPEN_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// Fills `error` with "<path>: <reason>" for an errno, and returns its status: GLINT_ERR_NO_SPACE, _NOMEM or _IO.
 glint_status glint_file_fail(glint_error *error, const char *path, int code);

@@ -2,7 +2,7 @@
 #ifndef GLINT_BASE_POOL_H
 #define GLINT_BASE_POOL_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 typedef struct glint_pool glint_pool;
 

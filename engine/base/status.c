@@ -1,5 +1,6 @@
 #include "engine/base/number.h"
 #include "engine/base/status.h"
+#include "engine/glint.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
 #ifndef GLINT_BASE_STATUS_H
 #define GLINT_BASE_STATUS_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// Fills `error` (when not NULL) with a formatted message and returns `status`, for `return glint_fail(...)`.
 glint_status glint_fail(glint_error *error, glint_status status, const char *format, ...)

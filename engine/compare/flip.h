@@ -8,7 +8,7 @@
 #ifndef GLINT_IMAGE_FLIP_H
 #define GLINT_IMAGE_FLIP_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// The viewing conditions and constants of the paper.
 #define GLINT_FLIP_PPD 67.02064327658226 ///< pixels per degree: 3840 pixels over 0.7 m, seen from 0.7 m: 3840 pi/180

@@ -4,7 +4,7 @@
 #define GLINT_FILM_COVER_H
 
 #include "engine/base/hash.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 #include <stdatomic.h>
 

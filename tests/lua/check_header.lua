@@ -40,7 +40,7 @@ local function text_of(path)
 end
 
 local headers = {}
-for _, name in ipairs { "", "_compare", "_data", "_figures", "_files", "_inspect", "_math", "_programs" } do
+for _, name in ipairs { "", "_compare", "_data", "_figures", "_files", "_inspect", "_math", "_programs", "_types" } do
   headers[#headers + 1] = "engine/glint" .. name .. ".h"
 end
 local listed <close> = assert(io.popen "ls engine/glint*.h")

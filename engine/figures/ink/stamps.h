@@ -3,6 +3,7 @@
 #define GLINT_INK_STAMPS_H
 
 #include "engine/figures/ink/ink.h"
+#include "engine/glint.h"
 
 /// A rectangle of one colour, in the pixel values of one picture.
 typedef struct glint_stamp {

@@ -3,7 +3,7 @@
 #define GLINT_OVERLAY_CURVES_H
 
 #include "engine/base/hash.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_figures.h"
 
 /// Extends a key by all curves.

@@ -1,5 +1,6 @@
 /// The elements of overlays: lines of text, rectangles and strokes.
 #include "engine/figures/overlay/layout.h"
+#include "engine/glint.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #define GLINT_OVERLAY_MARKS_H
 
 #include "engine/figures/text/typeface.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_figures.h"
 
 typedef struct glint_mark {

@@ -8,7 +8,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/figures/text/mask.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 #include <stdbool.h>
 #include <stddef.h>

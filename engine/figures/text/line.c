@@ -1,4 +1,5 @@
 #include "engine/figures/text/line.h"
+#include "engine/glint.h"
 
 #include "engine/base/status.h"
 #include "engine/figures/text/font.h"

@@ -1,4 +1,5 @@
 #include "engine/figures/text/typeface.h"
+#include "engine/glint.h"
 
 #include "engine/figures/text/font.h"
 

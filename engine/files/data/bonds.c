@@ -3,6 +3,7 @@
 /// The atoms are sorted into cells as wide as the longest bond, so each is compared only with the atoms of 27 cells. In a
 /// periodic box, images of the atoms near its faces are added to the list.
 #include "engine/base/status.h"
+#include "engine/glint.h"
 #include "engine/glint_data.h"
 
 #include <math.h>

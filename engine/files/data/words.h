@@ -2,7 +2,7 @@
 #ifndef GLINT_DATA_WORDS_H
 #define GLINT_DATA_WORDS_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_data.h"
 
 /// Returns the number of a word, or -1.

@@ -5,8 +5,7 @@
 
 #include "engine/files/picture/bytes.h"
 #include "engine/files/picture/png.h"
-#include "engine/glint.h"
-#include "engine/glint_files.h"
+#include "engine/glint_types.h"
 
 /// glint_bands: threads, their buffers, and the deflated bands of the last picture that had stamps.
 ///

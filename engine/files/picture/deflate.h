@@ -7,7 +7,7 @@
 #define GLINT_IMAGE_DEFLATE_H
 
 #include "engine/files/picture/bytes.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_files.h"
 
 /// Returns whether a stream may have several bands in this build.

@@ -7,7 +7,7 @@
 
 #include "engine/files/picture/bytes.h"
 #include "engine/files/picture/pfm.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_files.h"
 
 /// Appends the file to `out`, scan lines deflated in blocks of 16. The values are as in .pfm files. With `half`, passes

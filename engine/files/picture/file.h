@@ -4,7 +4,7 @@
 
 #include "engine/base/open.h"
 #include "engine/files/picture/bytes.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// Writes a whole file as one glint_draft, see glint_files.h. The caller must ignore SIGXFSZ and SIGPIPE; then EFBIG and
 /// EPIPE are reported like other errors. draft.c

@@ -1,5 +1,6 @@
 #include "engine/base/number.h"
 #include "engine/files/picture/pfm.h"
+#include "engine/glint.h"
 
 #include "engine/base/status.h"
 

@@ -3,7 +3,7 @@
 #define GLINT_IMAGE_PFM_H
 
 #include "engine/files/picture/bytes.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// Returns a value as stored in float files. With three channels, infinity becomes the largest float of its sign and
 /// NaN becomes 0. A single channel is a distance and may be infinite.

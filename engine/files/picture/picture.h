@@ -2,7 +2,7 @@
 #ifndef GLINT_IMAGE_PICTURE_H
 #define GLINT_IMAGE_PICTURE_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_files.h"
 
 /// Returns the decoded pixel values of a .png, uint8_t or uint16_t (native order), interleaved, top row first. NULL: a

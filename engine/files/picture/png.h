@@ -3,7 +3,7 @@
 #define GLINT_IMAGE_PNG_H
 
 #include "engine/files/picture/bytes.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_files.h"
 
 #define GLINT_PNG_TEXT_MAX 65536 ///< bytes of one text value

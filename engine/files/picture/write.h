@@ -4,7 +4,7 @@
 
 #include "engine/files/picture/bands.h"
 #include "engine/files/picture/bytes.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 typedef enum glint_file_kind {
     GLINT_FILE_PNG,

@@ -7,7 +7,7 @@
 #define GLINT_SHEET_LAYOUT_H
 
 #include "engine/figures/ink/ink.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_files.h"
 
 #define GLINT_SHEET_INK 0x222222 // of texts

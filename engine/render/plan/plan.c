@@ -372,7 +372,7 @@ void glint_plan_key(const glint_plan *plan, uint64_t key[2])
     key[1] = own.low;
 }
 
-void glint_plan_add_pass_key(const glint_plan *plan, glint_pass pass, uint64_t key[2])
+void glint_plan_add_pass_key(const glint_plan *plan, int pass, uint64_t key[2])
 {
     if (!plan || !key)
         return;

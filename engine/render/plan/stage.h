@@ -6,7 +6,7 @@
 #define GLINT_STAGE_H
 
 #include "engine/base/hash.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/render/effects/list.h"
 
 #define GLINT_STAGE_ID(id, name) GLINT_STAGE_##id,

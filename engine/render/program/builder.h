@@ -2,7 +2,7 @@
 #ifndef GLINT_PROGRAM_BUILDER_H
 #define GLINT_PROGRAM_BUILDER_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_programs.h"
 #include "engine/render/program/program.h"
 

@@ -3,7 +3,7 @@
 #define GLINT_PROGRAM_H
 
 #include "engine/base/hash.h"
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_programs.h"
 #include "engine/render/stages/stages.h"
 

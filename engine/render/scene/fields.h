@@ -2,7 +2,7 @@
 #ifndef GLINT_FIELDS_H
 #define GLINT_FIELDS_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 #include "engine/glint_inspect.h"
 
 #include <float.h>

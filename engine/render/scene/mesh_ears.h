@@ -2,7 +2,7 @@
 #ifndef GLINT_MESH_EARS_H
 #define GLINT_MESH_EARS_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 /// One face of a mesh.
 typedef struct glint_polygon {

@@ -1,4 +1,5 @@
 /// The tables of fields by kind of object.
+#include "engine/glint.h"
 #include "engine/render/scene/fields.h"
 
 static const glint_object_field *fields_of(glint_object_kind kind)

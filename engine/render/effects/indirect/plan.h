@@ -2,7 +2,7 @@
 #ifndef GLINT_INDIRECT_PLAN_H
 #define GLINT_INDIRECT_PLAN_H
 
-#include "engine/glint.h"
+#include "engine/glint_types.h"
 
 struct glint_plan;
 struct glint_plan_input;
