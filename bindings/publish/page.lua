@@ -2,6 +2,7 @@
 -- figure into other pages.
 local the = ...
 
+local MARGIN <const> = 34 -- CSS pixels beside the picture in page.html
 local FILE_BYTES_MAX <const> = 64 << 20 -- limit of one file that the script reads
 
 -- Returns the bytes of a file; nil and the reason if it cannot be read.
@@ -32,7 +33,7 @@ end
 
 -- Reads the engine for pages, renders the frame, and reads the script's files.
 local function make_page(my)
-  local wasm, engine, font = read_part(my, "glint.wasm.gz"), read_part(my, "publish.js"), read_part(my, "glint.ttf.gz")
+  local wasm, engine, font = read_part(my, "glint.wasm.gz"), read_part(my, "publish.js"), read_part(my, "glint.ttf")
   if not (wasm and engine) then
     error(my.who .. ": the engine for pages is missing (glint.wasm.gz, publish.js). Build it with `make web`, then run "
       .. "build/glint, or install glint again", 0)
@@ -105,18 +106,36 @@ local function check_controls(page)
   end
 end
 
--- The font of labels; without it they are of the bitmap font.
-local FONT <const> = '<script type="application/octet-stream" id="glint-font">%s</script>\n'
+-- The font of labels, of the still picture and of the engine; without it the engine has the bitmap font.
+local FONT <const> = '@font-face { font-family: "DejaVu Sans"; src: url("data:font/ttf;base64,%s"); }'
 
+-- The still picture, which readers without JavaScript keep, has its overlays for two widths of the page.
 local FIGURE <const> = [[
+<style id="glint-font">@FONT@</style>
+<style>
+  glint-figure { display: block; position: relative; }
+  glint-figure > img { display: block; max-width: 100%; height: auto; }
+  glint-figure > svg { position: absolute; inset: 0; width: 100%; height: 100%; white-space: pre; user-select: none; pointer-events: none; }
+  @media (min-width: @LIMIT@px) { glint-figure > .narrow { display: none; } }
+  @media not all and (min-width: @LIMIT@px) { glint-figure > .wide { display: none; } }
+</style>
 <glint-figure @ATTRIBUTES@ style="max-width: @WIDTH@px">
-<img src="data:image/png;base64,@POSTER@" width="@WIDTH@" height="@HEIGHT@" alt="@TITLE@"
-style="max-width: 100%; height: auto">
+<img src="data:image/png;base64,@POSTER@" width="@WIDTH@" height="@HEIGHT@" alt="@TITLE@">
+@OVERLAYS@
 </glint-figure>
 <script type="application/json" id="glint-job">@JOB@</script>
 <script type="application/octet-stream" id="glint-wasm">@WASM@</script>
-@FONT@<script type="module">@ENGINE@</script>
+<script type="module">@ENGINE@</script>
 ]]
+
+-- Returns the overlays of the still picture: SVG elements for pages that have its width, and for narrow ones.
+local function overlays_of(page)
+  local list = {}
+  for _, kind in ipairs { "wide", "narrow" } do
+    if page[kind] then list[#list + 1] = page[kind]:gsub("^<svg", '<svg class="' .. kind .. '" aria-hidden="true"') end
+  end
+  return table.concat(list, "\n")
+end
 
 local function fill(template, values)
   return (template:gsub("@(%u+)@", function(name) return values[name] and tostring(values[name]) end))
@@ -129,7 +148,7 @@ local function figure_of(page)
   return fill(FIGURE, {
     TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height, ATTRIBUTES = attributes_of(page),
     POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), ENGINE = page.engine,
-    FONT = page.font and FONT:format(the.base64(page.font)) or "",
+    FONT = page.font and FONT:format(the.base64(page.font)) or "", LIMIT = page.width + MARGIN, OVERLAYS = overlays_of(page),
     JOB = embedded(
       { name = page.script, text = page.source, files = files, same = same, values = values_of(page.params) },
       the.params(page.params)),

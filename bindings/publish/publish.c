@@ -2,6 +2,7 @@
 // the frame, shown until the engine has started. --live inserts the same figure into pages of other commands.
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,6 +13,9 @@
 #include "bindings/run/system.h"
 
 #define FILES_MAX 256
+#define SAMPLES 4 // as glint-figure.js has at least
+#define LETTERS 12 // smallest letters, CSS pixels
+#define PHONE 356 // width of the page's text on a phone of 390 CSS pixels
 
 static const char TRACK_LUA[] = {
 #include "bindings/watch/track.lua.h"
@@ -42,8 +46,9 @@ typedef struct publication {
     glint_image *image; // picture of the frame
     glintL_render render;
     int64_t frame;
-    uint8_t *poster; // owned
+    uint8_t *poster; // the picture without overlays; owned
     size_t poster_size;
+    char *marks[2]; // SVG of its overlays, for the picture's own size and for a phone; NULL: none; owned
 } publication;
 
 // ---- The files of the script ----
@@ -131,6 +136,21 @@ static void take_image(void *context, const glintL_run *run, const glintL_work *
     p->frame = work->index;
 }
 
+// Makes the overlays for the page's two widths.
+static bool make_marks(publication *p)
+{
+    glint_error error;
+    const int width = glint_image_width(p->image), height = glint_image_height(p->image);
+    for (int i = 0; i < 2; i++) {
+        const double scale = i ? fmin(1, (double)PHONE / width) : 1;
+        const glint_page page = { .width = (int)(width * scale + 0.5), .height = (int)fmax(1, height * scale + 0.5), .scale = scale,
+                                  .dpi = p->render.dpi, .least = LETTERS, .transfer = p->render.desc.tone.transfer };
+        if (glint_image_overlays_svg(p->image, &page, &p->marks[i], &error))
+            return glintL_run_fail(p->run, GLINTL_EXIT_FAILED, 0, "%s", error.message);
+    }
+    return true;
+}
+
 static bool render(publication *p)
 {
     glintL_run *run = p->run;
@@ -139,6 +159,7 @@ static bool render(publication *p)
     run->request.render_text[glintL_render_find("output")] = "none";
     run->keeps_images = true;
     run->no_sheets = true;
+    run->least_samples = SAMPLES;
     run->reporter = (glintL_reporter) { .context = p, .image = take_image, .prepare = prepare, .reads = note_file };
     glintL_selection_clear(&run->request.selection);
     if (!glintL_selection_add(&run->request.selection, (glintL_range) { p->options->frame, p->options->frame, 1 }))
@@ -150,8 +171,8 @@ static bool render(publication *p)
                                p->options->frame);
     glint_write_desc desc = { .path = "poster.png", .pass = GLINT_PASS_BEAUTY, .tone = p->render.desc.tone };
     desc.tone.bits = 8;
-    if (glint_image_to_bytes(p->image, &desc, &p->poster, &p->poster_size, &error) == GLINT_OK)
-        return true;
+    if (glint_image_to_bytes(glint_image_without_overlays(p->image), &desc, &p->poster, &p->poster_size, &error) == GLINT_OK)
+        return make_marks(p);
     return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", error.message);
 }
 
@@ -211,6 +232,8 @@ static int push_page(lua_State *L)
     lua_setfield(L, -2, "template");
     lua_pushlstring(L, (const char *)p->poster, p->poster_size);
     lua_setfield(L, -2, "poster");
+    glintL_set_text(L, "wide", p->marks[0]);
+    glintL_set_text(L, "narrow", p->marks[1]);
     add_files(L, p);
     return 1;
 }
@@ -249,6 +272,8 @@ static void destroy(publication *p)
         free(p->files[i].name);
     }
     free(p->poster);
+    free(p->marks[0]);
+    free(p->marks[1]);
 }
 
 int cli_publish(cli_options *options, cli_output *output, glintL_run *run)

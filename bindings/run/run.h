@@ -304,6 +304,7 @@ struct glintL_run {
     bool keeps_images; ///< every picture includes its linear beauty pass
     int preview_side; ///< > 0: limit of the longer side of pictures, which have one sample per pixel
     bool was_shrunk; ///< preview_side made the picture smaller
+    double least_samples; ///< samples of a pixel if the script has fewer
     double most_samples; ///< see glintL_run_limit; 0: no limit
     bool renders_partner; ///< pictures are the partners of those that are wanted, for glint_estimate_error
     bool is_dialect; ///< the script is in a dialect, where the functions that warnings name have other names

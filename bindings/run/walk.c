@@ -40,6 +40,7 @@ void glintL_run_apply(glintL_run *run, glintL_render *render)
     render->own_samples = render->desc.samples;
     if (run->preview_side > 0)
         shrink(run, &render->desc);
+    render->desc.samples = fmax(render->desc.samples, run->least_samples);
     if (run->most_samples > 0)
         render->desc.samples = fmin(render->desc.samples, run->most_samples);
     if (run->renders_partner)

@@ -1,106 +1,12 @@
 // Tests the element <glint-figure> as a reader uses it, with mouse, keyboard and fingers: controls, points, views, links,
-// attributes, events, errors, pages on a disk and published pages. Pictures equal the command's.
-//   node element.mjs WEB GLINT SCRIPTS WORK
-// The arguments are those of pages.mjs.
+// attributes, events, errors, pages on a disk and published pages. Pictures equal the command's. element.sh runs this file.
 import { execFileSync } from "node:child_process"
-import { createServer } from "node:http"
-import { cpSync, createReadStream, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs"
-import { dirname, extname, join, normalize } from "node:path"
+import { cpSync, readFileSync, writeFileSync } from "node:fs"
+import { dirname, join } from "node:path"
 import { fileURLToPath } from "node:url"
-import { chromium } from "playwright-core"
-
-const [web, glint, scripts, work] = process.argv.slice(2)
-const LIMIT_MS = 60000
-rmSync(work, { recursive: true, force: true })
-mkdirSync(work, { recursive: true })
-writeFileSync(join(work, "lamp.lua"), readFileSync(join(scripts, "../tests/web/lamp.lua")))
-
-let passed = 0, failed = 0
-function check(holds, what) {
-  if (holds) passed++
-  else failed++
-  if (!holds) console.log(`failed: ${what}`)
-}
-
-// ---- A server of the folder, and Chromium ----
-
-const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".png": "image/png" }
-const server = createServer((request, response) => {
-  const path = normalize(decodeURIComponent(new URL(request.url, "http://localhost").pathname))
-  const file = [join(work, path), join(web, path)].find(one => existsSync(one))
-  response.writeHead(file ? 200 : 404, { "content-type": types[extname(file ?? "")] ?? "text/plain" })
-  if (file) createReadStream(file).pipe(response)
-  else response.end()
-})
-await new Promise(done => server.listen(0, "127.0.0.1", done))
-const base = `http://127.0.0.1:${server.address().port}`
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] })
-
-const DESK = { viewport: { width: 1280, height: 800 } }
-const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 }
-
-async function open(address, options = DESK) {
-  const context = await browser.newContext(options)
-  const page = await context.newPage()
-  page.setDefaultTimeout(LIMIT_MS)
-  page.messages = []
-  page.on("console", message => message.text().includes("willReadFrequently") || page.messages.push(`${message.type()}: ${message.text()}`))
-  page.on("pageerror", error => page.messages.push(`error: ${error.message}`))
-  await page.goto(address.includes(":") ? address : `${base}/${address}`)
-  return page
-}
-
-async function close(page, what) {
-  check(page.messages.length === 0, `${what}: the console has: ${page.messages.join(" | ")}`)
-  await page.context().close()
-}
-
-function write(name, body) {
-  writeFileSync(join(work, name), `<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Test</title><link rel="icon" href="data:,"><script type="module" src="glint-figure.js"></script>${body}</html>`)
-}
-
-// ---- Figures ----
-
-const figureOf = (page, i = 0) => page.locator("glint-figure").nth(i)
-const ready = figure => figure.locator("canvas").waitFor({ state: "visible" })
-const settled = figure => figure.evaluate(one => new Promise((resolve, reject) => {
-  let timer = setTimeout(resolve, 700)
-  one.addEventListener("glint-render", ({ detail }) => {
-    clearTimeout(timer)
-    timer = setTimeout(resolve, detail.coarse ? 5000 : 700)
-  })
-  setTimeout(() => reject(new Error("no full picture")), 60000)
-}))
-
-// Returns whether the figure's job gives the command's picture for the values that the figure has.
-async function same(page, figure, ...words) {
-  const script = words[0]?.endsWith(".lua") ? words.shift() : "lamp.lua"
-  await settled(figure)
-  const codes = await figure.evaluate(async one => {
-    const { set, frame, orbit } = one.request()
-    const image = await one.job.render({ set, frame, ...orbit && { orbit }, width: 64, height: 40, samples: 1 })
-    return [...image.rgba]
-  })
-  execFileSync(glint, [script, "--size", "64x40", "--samples", "1", "--force", "--quiet", "-o", "native.png", ...words], { cwd: work, env: { ...process.env, GLINT_FONT: "bitmap" } })
-  const native = await page.evaluate(async base64 => {
-    const picture = new Image()
-    picture.src = `data:image/png;base64,${base64}`
-    await picture.decode()
-    const canvas = Object.assign(document.createElement("canvas"), { width: picture.naturalWidth, height: picture.naturalHeight })
-    canvas.getContext("2d").drawImage(picture, 0, 0)
-    return [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data]
-  }, readFileSync(join(work, "native.png")).toString("base64"))
-  return codes.length === native.length && codes.every((code, i) => code === native[i])
-}
-
-const valuesOf = figure => figure.evaluate(one => one.values)
-const eventsOf = figure => figure.evaluate(one => one.events)
-const listen = figure => figure.evaluate(one => {
-  one.events = []
-  one.addEventListener("value", ({ detail }) => one.events.push(detail))
-})
+import {
+  web, glint, scripts, work, browser, DESK, PHONE, check, open, close, write, figureOf, ready, settled, same, valuesOf, eventsOf, listen, run, shiftOf, touches, runAll,
+} from "./browser.mjs"
 
 async function controls() {
   write("controls.html", `<glint-figure src="lamp.lua" width="640" height="400"></glint-figure>`)
@@ -241,12 +147,6 @@ async function hands() {
   await close(page, "hands")
 }
 
-// Sends touches at points of the page through the browser's own input.
-async function touches(page) {
-  const session = await page.context().newCDPSession(page)
-  return (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) })
-}
-
 async function phone() {
   write("phone.html", `<p>Text before.</p><glint-figure src="lamp.lua" width="640" height="400"></glint-figure><div style="height: 1500px">Text after.</div>`)
   const page = await open("phone.html", PHONE), figure = figureOf(page)
@@ -292,15 +192,6 @@ async function phone() {
 }
 
 // ---- Pages ----
-
-const run = (...words) => execFileSync(glint, words, { cwd: work, stdio: "pipe", env: { ...process.env, GLINT_FONT: "bitmap", GLINT_WEB: web, LUA_PATH: "./?.lua" } })
-
-// Returns how far the layout of a page has shifted since it began to load, as browsers count it.
-const shiftOf = page => page.evaluate(() => new Promise(resolve => {
-  let sum = 0
-  new PerformanceObserver(list => { for (const one of list.getEntries()) sum += one.value }).observe({ type: "layout-shift", buffered: true })
-  setTimeout(() => resolve(sum), 200)
-}))
 
 async function published() {
   run("publish", "lamp.lua", "-o", "moving_lamp.html", "--set", "tilt=30")
@@ -435,16 +326,4 @@ async function playground() {
   await close(page, "playground")
 }
 
-const only = process.env.T ?? ""
-for (const test of [controls, attributes, errors, hands, phone, published, recipe, bundled, disk, playground]) {
-  if (!test.name.includes(only)) continue
-  try {
-    await test()
-  } catch (error) {
-    check(false, `${test.name}: ${error.stack}`)
-  }
-}
-await browser.close()
-server.close()
-console.log(`${passed} passed, ${failed} failed`)
-process.exit(failed === 0 ? 0 : 1)
+await runAll([controls, attributes, errors, hands, phone, published, recipe, bundled, disk, playground])

@@ -21,6 +21,20 @@ function node(tag, parts = [], attributes = {}) {
   return element
 }
 
+const FONTS = "'STIX Two Math', 'Cambria Math', 'Latin Modern Math', math"
+const math = inner => node("math", inner, { style: `font-family: ${FONTS}` })
+
+// How a browser without a font for mathematics sets scripts: subscripts stand on the baseline, superscripts high above it.
+let setsFlat
+function measure() {
+  const base = node("mi", "x"), down = node("mi", "x"), probe = math(node("msub", [base, down]))
+  probe.style.cssText += "; position: absolute; visibility: hidden"
+  document.body.append(probe)
+  setsFlat = down.getBoundingClientRect().bottom <= base.getBoundingClientRect().bottom + 1
+  probe.remove()
+}
+const lowered = (script, by) => setsFlat ? node("mpadded", script, { voffset: `${-by}em` }) : script
+
 // Returns a letter in one of Unicode's mathematical alphabets.
 function styled(letter, style) {
   const first = FIRST[style]
@@ -57,7 +71,7 @@ class Parser {
       found[sign] = this.argument(style)
     }
     const { "^": up, _: down } = found
-    return up && down ? node("msubsup", [base, down, up]) : up ? node("msup", [base, up]) : down ? node("msub", [base, down]) : base
+    return up && down ? node("msubsup", [base, down, up]) : up ? node("msup", [base, lowered(up, 0.1)]) : down ? node("msub", [base, lowered(down, 0.3)]) : base
   }
 
   argument(style) {
@@ -151,8 +165,8 @@ class Parser {
 function mathOf(formula) {
   try {
     const parser = new Parser(formula)
-    const inner = parser.list("", [])
-    return node("math", inner)
+    if (setsFlat === undefined) measure()
+    return math(parser.list("", []))
   } catch {
     return undefined
   }

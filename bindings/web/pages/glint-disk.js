@@ -2,7 +2,7 @@
 // this script.
 import wasm from "./glint.wasm.gz"
 import font from "./glint.ttf.gz"
-import { loadFrom } from "./inside.js"
+import { loadFrom, unzipped } from "./inside.js"
 import { useEngine } from "./glint-figure.js"
 
-useEngine(loadFrom(wasm, font))
+useEngine(loadFrom(wasm, unzipped(font, "font/ttf").arrayBuffer()))

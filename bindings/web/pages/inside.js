@@ -3,11 +3,14 @@ import { loadWithFont } from "./renderer.js"
 import { bytesOf } from "./source.js"
 import workerText from "./worker.txt"
 
-const unzipped = base64 => new Response(new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer()
+// Returns the response whose body is what a base64 text has compressed.
+export const unzipped = (base64, type) =>
+  new Response(new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("gzip")), { headers: { "content-type": type } })
 
-// Loads the engine from the base64 of glint.wasm.gz and of glint.ttf.gz, which may be missing.
-export async function loadFrom(...texts) {
-  const [wasm, font = null] = await Promise.all(texts.filter(Boolean).map(unzipped))
+// Loads the engine from the base64 of glint.wasm.gz and the bytes of a font, which may be missing. The module is compiled
+// while it is decompressed.
+export async function loadFrom(wasm, font) {
   const worker = new Blob(["(async () => {", workerText, "\n})()"], { type: "text/javascript" })
-  return loadWithFont({ wasm, font, worker: URL.createObjectURL(worker) })
+  const [module, letters] = await Promise.all([WebAssembly.compileStreaming(unzipped(wasm, "application/wasm")), font])
+  return loadWithFont({ wasm: module, font: letters ?? null, worker: URL.createObjectURL(worker) })
 }

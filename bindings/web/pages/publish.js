@@ -2,8 +2,9 @@
 import { setText } from "./formula.js"
 import { useEngine } from "./glint-figure.js"
 import { loadFrom } from "./inside.js"
-import { jobOf } from "./source.js"
+import { bytesOf, jobOf } from "./source.js"
 
 for (const heading of document.querySelectorAll("h1")) setText(heading, heading.textContent)
-useEngine(loadFrom(document.getElementById("glint-wasm").textContent, document.getElementById("glint-font")?.textContent))
+const font = /base64,([^"]*)/.exec(document.getElementById("glint-font").textContent)
+useEngine(loadFrom(document.getElementById("glint-wasm").textContent, font && bytesOf(font[1])))
 document.querySelector("glint-figure").given = jobOf(document)

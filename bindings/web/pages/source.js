@@ -2,7 +2,11 @@
 
 export const listed = text => text.split(",").map(part => part.trim()).filter(Boolean)
 
-export const bytesOf = base64 => Uint8Array.from(atob(base64), letter => letter.charCodeAt(0))
+export function bytesOf(base64) {
+  const text = atob(base64), bytes = new Uint8Array(text.length)
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i)
+  return bytes
+}
 
 // Returns the job of a page of glint publish: { name, text, files, values, params }.
 export function jobOf(document) {

@@ -1,0 +1,74 @@
+// Tests what a reader of a page with figures sees: still pictures, formulas, letters on a phone, the order of controls, lines
+// and messages. element.sh runs this file.
+import { execFileSync } from "node:child_process"
+import { writeFileSync } from "node:fs"
+import { join } from "node:path"
+import { browser, check, close, DESK, figureOf, glint, open, PHONE, ready, runAll, settled, web, work, write } from "./browser.mjs"
+
+const publish = (script, page) => execFileSync(glint, ["publish", script, "-o", page], { cwd: work, stdio: "pipe", env: { ...process.env, GLINT_FONT: "", GLINT_WEB: web } })
+
+// Returns the letters in sight over a figure's picture, as [text, font size on the page, x, y], in CSS pixels.
+const lettersOf = page => page.evaluate(() => {
+  const figure = document.querySelector("glint-figure")
+  const all = [...figure.querySelectorAll(":scope > svg text"), ...figure.shadowRoot?.querySelectorAll(".over text") ?? []]
+  return all.map(text => ({ text, box: text.getBoundingClientRect() })).filter(({ box }) => box.width > 0).map(({ text, box }) =>
+    [text.textContent, text.getAttribute("font-size") * box.height / text.getBBox().height, box.x, box.y].map(one => typeof one === "number" ? Number(one.toFixed(1)) : one))
+})
+
+writeFileSync(join(work, "labels.lua"), `local glint = require "glint"
+local P = glint.params { ks = { 0.5, min = 0, max = 1, label = "$k_s$", doc = "exponent $x^n$ of $k$" } }
+return glint.animation { frames = 1, width = 640, height = 400, scene = glint.scene { camera = glint.camera { eye = { 0, 0, 7 }, at = { 0, 0, 0 } },
+  ambient = 0.4, background = "white", glint.sphere { center = { 0, 0, 0 }, radius = 1.3, material = glint.material { specular = P.ks } },
+  glint.label { text = [[$L_o = k_a L_a + \\sum_i L_i\\left(k_d\\,(\\hat n\\cdot\\hat l_i) + k_s\\,(\\hat r_i\\cdot\\hat v)^n\\right)$]], at = "top", color = "black", size = 18 },
+  glint.label { text = "a caption without a size", at = "bottom left", color = "black" } } }`)
+
+// The still picture of a published page has the letters of the live one, and at least four samples.
+async function still() {
+  publish("labels.lua", "still.html")
+  const address = `file://${join(work, "still.html")}`
+  for (const [name, options] of [["desk", DESK], ["phone", PHONE]]) {
+    const context = await browser.newContext({ ...options, javaScriptEnabled: false }), plain = await context.newPage()
+    await plain.goto(address)
+    check(await plain.locator("glint-figure > svg:visible").count() === 1, `still, ${name}: overlays without JavaScript`)
+    check(await plain.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `still, ${name}: no horizontal scroll`)
+    const image = await plain.locator("glint-figure > img").boundingBox(), marks = await plain.locator("glint-figure > svg:visible").boundingBox()
+    check(["x", "y", "width", "height"].every(side => Math.abs(image[side] - marks[side]) < 1), `still, ${name}: the overlays lie over the picture`)
+    await plain.screenshot({ path: join(work, `still-${name}.png`) })
+    await context.close()
+    const page = await open("about:blank", options)
+    await page.goto(address, { waitUntil: "commit" })
+    await page.waitForFunction(() => document.querySelectorAll("glint-figure > svg").length === 2)
+    const before = await lettersOf(page)
+    await ready(figureOf(page))
+    await settled(figureOf(page))
+    const after = await lettersOf(page)
+    check(before.length > 20 && before.every(([, size]) => size >= 12), `still, ${name}: letters of ${Math.min(...before.map(one => one[1]))}`)
+    check(JSON.stringify(before) === JSON.stringify(after), `still, ${name}: letters jump:\n${before}\n${after}`)
+    check(after.every(([,, x]) => x >= 0 && x < options.viewport.width), `still, ${name}: letters outside`)
+    // an edge of one sample has no values between the ball and the white ground
+    const shades = await page.evaluate(async () => {
+      const image = document.querySelector("glint-figure > img"), canvas = new OffscreenCanvas(image.naturalWidth, image.naturalHeight), context = canvas.getContext("2d")
+      context.drawImage(image, 0, 0)
+      const row = context.getImageData(0, 200, canvas.width, 1).data, seen = [...row].filter((_, i) => i % 4 === 0)
+      return seen.slice(0, 320).filter((one, i) => one < 255 && seen[i - 1] === 255 && seen[i + 1] < one).length
+    })
+    check(shades >= 1, `still, ${name}: stairs at edges`)
+    await close(page, `still, ${name}`)
+  }
+}
+
+// Without a font for mathematics, browsers set subscripts on the baseline.
+async function formulas() {
+  write("formulas.html", `<glint-figure src="labels.lua"></glint-figure>`)
+  const page = await open("formulas.html"), figure = figureOf(page)
+  await ready(figure)
+  const box = locator => figure.locator(locator).evaluate(one => one.getBoundingClientRect().toJSON())
+  const base = await box(".name msub > mi"), down = await box(".name msub mpadded mi, .name msub mi:nth-child(2)")
+  check(down.bottom > base.bottom + 1.5 && down.top > base.top && down.height < base.height, `formulas: a subscript: ${base.bottom} ${down.bottom}`)
+  const x = await box(".doc msup > mi"), up = await box(".doc msup mpadded mi, .doc msup mi:nth-child(2)"), size = parseFloat(await figure.locator(".doc").evaluate(one => getComputedStyle(one).fontSize))
+  check(up.bottom < x.bottom - 0.2 * size && up.bottom > x.top - 0.2 * size, `formulas: an exponent: ${x.top} ${x.bottom} ${up.bottom}`)
+  await page.screenshot({ path: join(work, "formulas.png"), fullPage: true })
+  await close(page, "formulas")
+}
+
+await runAll([still, formulas])
