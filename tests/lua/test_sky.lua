@@ -36,12 +36,12 @@ local function look(sky, samples, more, options)
   return glint.scene(fields):render(all)
 end
 
--- Returns the mean, the relative standard deviation and the largest value of the pass `indirect`.
-local function statistics(image)
+-- Returns the mean, the relative standard deviation and the largest value of a pass.
+local function statistics(image, pass)
   local sum, square, most, count = 0, 0, 0, image.width * image.height
   for y = 0, image.height - 1 do
     for x = 0, image.width - 1 do
-      local value = image:pixel(x, y, "indirect")
+      local value = image:pixel(x, y, pass or "indirect")
       sum, square, most = sum + value, square + value * value, math.max(most, value)
     end
   end
@@ -184,17 +184,36 @@ function tests.a_sun_in_rough_mirrors()
       background = disk(at_height(math.pi / 2 - turn), radius, bright), reflection_samples = 16,
       glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0, mirror = 1, roughness = roughness } },
     }:render { width = 32, height = 24, output = "none", passes = "beauty,mirror" }
-    local sum, square, count = 0, 0, image.width * image.height
-    for y = 0, image.height - 1 do
-      for x = 0, image.width - 1 do
-        local value = image:pixel(x, y, "mirror")
-        sum, square = sum + value, square + value * value
-      end
-    end
-    local mean = sum / count
-    local deviation = math.sqrt(math.max(square / count - mean * mean, 0)) / mean
+    local mean, deviation = statistics(image, "mirror")
     near(mean, want, 0.05 * want, ("roughness %g, the sun %g from the zenith"):format(roughness, turn))
     check(deviation < 0.25, "roughness %g, the sun %g from the zenith: relative noise %g", roughness, turn, deviation)
+  end
+end
+
+-- A sun seen from inside rough glass, upwards through its top: (1 - F) D G1 (v.h) (o.h) / (ior v.h - o.h)^2 times the
+-- sun's irradiance on a surface that faces it (B. Walter et al., EGSR 2007), with o towards the sun and v towards the eye.
+function tests.a_sun_in_rough_glass()
+  for _, case in ipairs { { 0.3, 0.2 }, { 0.3, 0.3, true }, { 0.5, 0, true }, { 0.5, 0.5 }, { 0.9, 0.6, true } } do
+    local roughness, turn, fresnel = table.unpack(case)
+    local alpha, ior, radius, bright = roughness ^ 2, 1.5, 0.02, 1e4
+    local along, across = ior - math.cos(turn), math.sin(turn) -- of v.h and o.h, both positive
+    local length = math.sqrt(along ^ 2 + across ^ 2)
+    local eye = along / length
+    local out = ior * eye - length
+    local d = alpha ^ 2 / (math.pi * (eye ^ 2 * (alpha ^ 2 - 1) + 1) ^ 2)
+    local g1 = 2 / (1 + math.sqrt(1 + (alpha * math.tan(turn)) ^ 2))
+    local p, q = (ior * eye - out) / (ior * eye + out), (eye - ior * out) / (eye + ior * out)
+    local passed = fresnel and 1 - (p ^ 2 + q ^ 2) / 2 or 1
+    local want = passed * d * g1 * eye * out / length ^ 2 * math.pi * math.sin(radius) ^ 2 * bright
+    local image = glint.scene {
+      camera = glint.camera { eye = { 0, -9, 0 }, at = { 0, 0, 0 }, up = { 0, 0, -1 }, projection = "orthographic", height = 1 },
+      background = disk(at_height(math.pi / 2 - turn), radius, bright), reflection_samples = 16,
+      glint.box { min = { -99, -99, -99 }, max = { 99, 0, 99 },
+        material = glint.material { diffuse = 0, transmission = 1, mirror = fresnel and 1 or 0, fresnel = fresnel, ior = ior, roughness = roughness } },
+    }:render { width = 32, height = 24, output = "none", passes = "beauty,transmission", max_depth = 1 }
+    local mean, deviation = statistics(image, "transmission")
+    near(mean, want, 0.05 * want, ("rough glass of %g, the sun %g from the zenith"):format(roughness, turn))
+    check(deviation < 0.25, "rough glass of %g, the sun %g from the zenith: relative noise %g", roughness, turn, deviation)
   end
 end
 

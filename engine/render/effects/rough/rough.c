@@ -146,8 +146,6 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     const double least = first->min_throughput[i];
     double cube[3], lot[2];
     glint_ray_begin(batch, seen, &rough->frame, i, first, i);
-    if (!from)
-        first->term[i] = event == GLINT_EVENT_MIRROR ? GLINT_TERM_MIRROR : GLINT_TERM_TRANSMISSION;
     first->point[i] = i;
     first->min_throughput[i] = least;
     for (int c = 0; c < 3; c++)
@@ -156,7 +154,9 @@ static void begin_path(struct glint_rough *rough, const glint_tile *seen, const 
     if (rough->plan.sky)
         glint_indirect_draw(paths, i, number, 1, lot); // sample_event takes the first of them
     cube[2] = rough->plan.sky ? lot[1] : 0;
-    glint_rough_leave(batch, seen, &rough->frame, i, disk, cube, event, first, i);
+    event = glint_rough_leave(batch, seen, &rough->frame, i, disk, cube, event, first, i);
+    if (!from)
+        first->term[i] = event == GLINT_EVENT_MIRROR ? GLINT_TERM_MIRROR : GLINT_TERM_TRANSMISSION;
 }
 
 /// Makes the first rays of the points in `wanted` that the stage spread serves.

@@ -28,8 +28,9 @@ static inline double glint_schlick(const glint_bounce_material *m, int c, double
 /// Turns ray n, which glint_ray_begin has started at sample i, into one that its rough surface reflects or refracts:
 /// direction, side, depth, media; multiplies the throughput, which is 0 where the drawn facet sends the ray through the
 /// surface. disk: a point of the unit disk, where equal areas are equally likely. cube: the point of the unit square that
-/// it belongs to, and a third number in 0 .. 1; only read under a sky with bright parts.
-void glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       const double disk[2], const double *cube, glint_event event, glint_rays *rays, uint32_t n);
+/// it belongs to, and a third number in 0 .. 1; only read under a sky with bright parts, which may draw another event
+/// than the given one. Returns the event.
+glint_event glint_rough_leave(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                              const double disk[2], const double *cube, glint_event event, glint_rays *rays, uint32_t n);
 
 #endif
