@@ -180,9 +180,9 @@ BEST     = $(if $(call native_has,__AVX512BW__ __AVX512DQ__ __AVX512VL__),avx512
 ifeq ($(KERNELS),native)
   override KERNELS := $(BEST)
 endif
-# The stages and the kernels of effects are compiled for each instruction set, those of geometry and light also for each
+# The stages and the kernels of other folders are compiled for each instruction set, those of geometry and light also for each
 # precision.
-STAGE_SRC    := $(filter-out engine/render/stages/ref/% engine/render/stages/simd/select.c,$(filter engine/render/stages/% $(wildcard engine/render/effects/*/kernel*.c),$(ENGINE_SRC)))
+STAGE_SRC    := $(filter-out engine/render/stages/ref/% engine/render/stages/simd/select.c,$(filter engine/render/stages/% $(wildcard engine/render/*/kernel*.c engine/render/effects/*/kernel*.c),$(ENGINE_SRC)))
 STAGES_ONCE  := $(filter engine/render/stages/simd/% engine/render/stages/film/% %/shade/samples.c \
                   %/adaptive/kernel.c %/derivative/kernel.c %/pattern/kernel.c %/kernel_sky.c,$(STAGE_SRC))
 STAGES_TWICE := $(filter-out $(STAGES_ONCE),$(STAGE_SRC))
@@ -244,10 +244,10 @@ $(foreach isa,$(KERNELS),$(foreach real,64 32,$(eval $(call stage_rule,$(isa).f$
 $(TABLE_OBJ): OWN = $(call without_kernels,$(LEFT_OUT))
 $(TABLE_OBJ): $(BUILD)/kernels $(BUILD)/effects
 # Some sources need flags of their own.
-UNROLLED := $(addprefix engine/,compare/flip.c render/frame/stats.c render/paths/batch.c render/paths/event.c $(addprefix render/effects/,adaptive/choose.c bounce/bounce.c \
-              derivative/bend.c derivative/derivative.c derivative/fade.c derivative/shader.c environment/environment.c \
-              indirect/begin.c indirect/indirect.c light_groups/light_groups.c pattern/inputs.c pattern/shader.c transparent_shadow/plan.c \
-              transparent_shadow/transparent_shadow.c))
+UNROLLED := $(addprefix engine/,compare/flip.c $(addprefix render/,adaptive/choose.c frame/stats.c light_groups/light_groups.c \
+              paths/batch.c paths/event.c pattern/inputs.c pattern/shader.c) $(addprefix render/effects/,bounce/bounce.c derivative/bend.c derivative/derivative.c \
+              derivative/fade.c derivative/shader.c environment/environment.c indirect/begin.c indirect/indirect.c \
+              transparent_shadow/plan.c transparent_shadow/transparent_shadow.c))
 $(if $(filter-out $(ENGINE_SRC),$(UNROLLED)),$(error no such source: $(filter-out $(ENGINE_SRC),$(UNROLLED))))
 $(UNROLLED:%.c=$(BUILD)/%.o): OWN := $(KERNEL_CFLAGS)
 $(BUILD)/engine/render/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%) $(NO_FLOAT)

@@ -20,9 +20,9 @@ for header in $(find engine bindings -name "*.h"); do
     */simd/avx2.h) alone "$header" "$@" -mavx2 -mfma ;;
     */simd/avx512.h) alone "$header" "$@" -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma ;;
     # generic.h includes neon.h on ARM and wasm.h on WebAssembly; ref.c includes its headers for double and for float
-    */simd/neon.h | */simd/wasm.h | engine/render/stages/ref/*.h | engine/render/effects/*/ref.h | engine/render/effects/*/ref_*.h) ;;
+    */simd/neon.h | */simd/wasm.h | engine/render/stages/ref/*.h | engine/render/*/ref.h | engine/render/*/ref_*.h) ;;
     engine/render/stages/contract/*.h) alone "$header" "$@" ;;
-    engine/render/stages/*/*.h | engine/render/effects/*/kernel_*.h)
+    engine/render/stages/*/*.h | engine/render/*/kernel_*.h)
         alone "$header" "$@" -DGLINT_ISA=generic -DGLINT_REAL=64
         alone "$header" "$@" -DGLINT_ISA=generic -DGLINT_REAL=32 ;;
     *) alone "$header" "$@" ;;
@@ -30,7 +30,7 @@ for header in $(find engine bindings -name "*.h"); do
 done
 
 # A kernel is not compiled again when the description of a scene gets another field.
-for kernel in engine/render/stages/[^rs]*/*.c engine/render/effects/*/kernel*.c; do
+for kernel in engine/render/stages/[^rs]*/*.c engine/render/*/kernel*.c engine/render/effects/*/kernel*.c; do
     if ${CC:-cc} "$@" -DGLINT_ISA=generic -DGLINT_REAL=64 -MM "$kernel" | grep -qw 'engine/glint\.h'; then
         echo "$kernel depends on engine/glint.h"
         bad=1

@@ -44,19 +44,35 @@ layer $film $base
 layer $render/scene $render/stages $base
 layer $render/geometry $render/scene $render/stages $base
 layer $render/program $film $stages $base
-# An effect's plan.h belongs to the plan; its other headers belong to tile rendering and to the frame around it.
 effects="$render/effects/[a-z_]*"
-for files in "$render/plan/*.[ch]" "$render/effects/*/plan*.[ch]" $render/effects/derivative/slopes.h; do
-    includes "$files" $render/plan $render/effects "$effects/(plan|slopes).h" $render/program $render/geometry $render/scene $film $stages $base
+below="$render/program $render/reuse $render/plan $film $stages $render/stages/light $base"
+plans="$render/[a-z_]*/plan.h $effects/plan.h"
+# plan.h of a folder belongs to the plan: the plan and other folders read its tables.
+for files in "$render/plan/*.[ch]" "$render/*/plan*.[ch] $render/effects/*/plan*.[ch]" $render/effects/derivative/slopes.h; do
+    # shellcheck disable=SC2086
+    includes "$files" $render/plan $render/effects $plans "$effects/slopes.h" $render/program $render/geometry $render/scene $film $stages $base
 done
-layer $render/reuse "$effects/plan.h" $render/program $render/plan $film $stages $base
-layer $render/tile "$effects" $render/program $render/reuse $render/plan $film $stages $render/stages/light $base
-layer $render/paths "$effects" $render/program $render/tile $render/plan $film $stages $base
-layer $render/frame "$effects" $render/program $render/tile $render/reuse $render/plan $film $stages $base
-kernels=$(find $render/effects -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')
-includes "$render/stages/*.h $render/stages/*/*.[ch] $kernels" "$render/stages(/[a-z]*)?" "$effects/(contract|kernel_[a-z]*|ref|ref_[a-z]*).h" $film/codes.h $base
-includes "$(find $render/effects/*/ -name '*.[ch]' | grep -vxF "$kernels")" "$effects" $render/effects $render/frame $render/paths $render/tile $render/program \
-    $render/reuse $render/plan $render/geometry $render/scene $film $stages $render/stages/light $base
+# shellcheck disable=SC2086
+{
+    layer $render/reuse $plans $below
+    layer $render/tile $plans $render/pattern $render/adaptive $below
+    layer $render/paths $plans $render/tile $render/pattern $render/light_groups $below
+    layer $render/frame $plans $render/tile $render/adaptive $below
+}
+kernels=$(find $render -name 'kernel*.[ch]' -o -name contract.h -o -name ref.h -o -name 'ref_*.h')
+includes "$render/stages/*.h $render/stages/*/*.[ch] $kernels" "$render/stages(/[a-z]*)?" "$render/([a-z_]*|effects/[a-z_]*)/(contract|kernel_[a-z]*|ref|ref_[a-z]*).h" $film/codes.h $base
+# An effect knows the core, and the other effects that its declaration names. Apart from calls, derivatives read what
+# faces, vertices and the depth cue have stored.
+for folder in "$render/pattern" "$render/adaptive" "$render/light_groups" "$render"/effects/*/; do
+    folder=${folder%/}
+    others=$(sed -n 's/.*\.calls = "\(.*\)",.*/\1/p' "$folder"/*.c)
+    [ "$folder" = $render/effects/derivative ] && others="depth_cue vertex_shading"
+    set -- "$folder"
+    for other in $others; do set -- "$@" "$render/effects/$other"; done
+    # shellcheck disable=SC2086
+    includes "$(find "$folder" -name '*.[ch]' | grep -vxF "$kernels")" "$@" $plans $render/effects $render/frame $render/paths $render/tile \
+        $render/pattern $render/adaptive $render/light_groups $render/geometry $render/scene $below
+done
 
 # ---- Around it ----
 figures='engine/glint_figures.h'

@@ -12,7 +12,7 @@ if command -v cppcheck >/dev/null 2>&1; then
     cppcheck --quiet --std=c11 --language=c -j 2 -I. --enable=warning,portability --inline-suppr \
         --suppress=missingIncludeSystem --suppress=unknownMacro --suppress=invalidPointerCast --error-exitcode=1 -D__x86_64__ -U__cplusplus \
         -D__BYTE_ORDER__=1234 -D__ORDER_LITTLE_ENDIAN__=1234 \
-        --template='{file}:{line}: {severity}: {message} [{id}]' $(printf ' -i %s' engine/render/effects/*/kernel*.c) \
+        --template='{file}:{line}: {severity}: {message} [{id}]' $(printf ' -i %s' engine/render/*/kernel*.c engine/render/effects/*/kernel*.c) \
         $(find engine -mindepth 1 -maxdepth 2 -type d | grep -vE "/(render|stages)$") bindings || bad=1
 else
     echo "skip: cppcheck is not installed"

@@ -46,7 +46,6 @@ refused depth_cue 'light that fades' 'depth_cue = { near = 1, far = 9 },' ''
 refused environment 'pattern or texture' 'background = glint.pattern(function(p) return glint.abs(p.x) end),' ''
 refused indirect 'indirect light' 'indirect = { samples = 4, bounces = 1 },' ''
 refused indirect 'indirect light' 'ambient = 1, ambient_occlusion = { samples = 4 },' ''
-refused light_groups 'light passes' '' '' --passes 'light:*'
 refused microfacet microfacets '' 'model = "cook_torrance", specular = 1'
 refused outline outlines '' '' --outline black
 refused raster 'scan conversion' '' '' --visibility scan

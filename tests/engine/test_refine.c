@@ -3,7 +3,7 @@
 #include "tests/engine/cases/stage_case.h"
 
 #include "engine/film/tone.h"
-#include "engine/render/effects/adaptive/choose.h"
+#include "engine/render/adaptive/choose.h"
 #include "tests/engine/cases/floor_scene.h"
 
 enum { WIDTH = 32, HEIGHT = 41, PIXELS = WIDTH * HEIGHT };

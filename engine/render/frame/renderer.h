@@ -6,7 +6,7 @@
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
 #include "engine/glint_inspect.h"
-#include "engine/render/effects/adaptive/choose.h"
+#include "engine/render/adaptive/choose.h"
 #include "engine/render/frame/grids.h"
 #include "engine/render/reuse/reuse.h"
 #include "engine/render/tile/tile.h"

@@ -1,7 +1,7 @@
 /// The walk of a batch of rays: casts them, packs their hits into few groups, and runs the stages.
 #include "engine/base/vec.h"
-#include "engine/render/effects/cut_out/cut_out.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/pattern/pattern.h"
+#include "engine/render/light_groups/light_groups.h"
 
 #include <string.h>
 

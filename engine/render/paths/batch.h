@@ -5,7 +5,7 @@
 #define GLINT_PATHS_BATCH_H
 
 #include "engine/render/effects/bounce/plan.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 #include "engine/render/paths/ray.h"
 
 typedef struct glint_batch {
@@ -26,6 +26,7 @@ typedef struct glint_batch {
     uint16_t wanted[GLINT_TILE_GROUPS], total[GLINT_TILE_GROUPS];
     _Alignas(64) double ratio[GLINT_TILE_SAMPLES];
     _Alignas(64) double reflectance[GLINT_TILE_SAMPLES];
+    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES]; ///< real; only in frames with bumps
     _Alignas(64) double reflected[3][GLINT_TILE_SAMPLES], refracted[3][GLINT_TILE_SAMPLES];
 } glint_batch;
 

@@ -64,6 +64,60 @@ double glint_event_ratio(const glint_batch *batch, const glint_tile *tile, const
     return index_of(frame->plan, sides[0]) / index_of(frame->plan, sides[1]);
 }
 
+static void load(void *const array[3], glint_precision precision, uint32_t i, double out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = glint_real_at(array[c], precision, i);
+}
+
+/// Returns whether light along `d` continues with the normal `n` as with the surface's own normal: reflected on this
+/// side of it, refracted beyond. ratio: see glint_bounce_args.
+static bool goes_on(const double d[3], const double n[3], const double own[3], double ratio)
+{
+    double u[3], reflected[3], refracted[3];
+    vec_normalize(u, d);
+    const double cosine = -vec_dot(n, u), k = 1 - ratio * ratio * (1 - cosine * cosine), s = sqrt(fmax(k, 0));
+    for (int c = 0; c < 3; c++) {
+        reflected[c] = u[c] + 2 * cosine * n[c];
+        refracted[c] = ratio * u[c] + (ratio * cosine - s) * n[c];
+    }
+    return cosine > 0 && vec_dot(reflected, own) > 0 && (!(k > 0) || vec_dot(refracted, own) < 0);
+}
+
+/// Computes the normals used for reflection and refraction. If the bumped normal would send light through the surface
+/// of a mirror, or not through the surface of glass, the unbumped normal is used.
+static void find_normals(glint_batch *batch, const glint_tile *tile, const glint_plan *plan, const void *normal[3])
+{
+    const glint_precision precision = plan->desc.precision;
+    void *own[3], *perturbed[3];
+    for (int c = 0; c < 3; c++) {
+        own[c] = tile->unbumped[c];
+        normal[c] = perturbed[c] = batch->normal[c];
+        memcpy(perturbed[c], tile->surface.normal[c], tile->group_count * GLINT_GROUP * sizeof(double));
+    }
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        double d[3], n[3], surface[3];
+        if (!glint_has_lane(batch->wanted, i) || !plan->patterns->of[tile->surface.material[i]].slope)
+            continue;
+        load(perturbed, precision, i, n);
+        load(own, precision, i, surface);
+        for (int c = 0; c < 3; c++)
+            d[c] = glint_tile_direction(tile, precision, c, i);
+        for (int c = 0; c < 3 && !goes_on(d, n, surface, glint_real_at(batch->ratio, precision, i)); c++)
+            glint_real_put(perturbed[c], precision, i, surface[c]);
+    }
+}
+
+bool glint_event_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i, const double direction[3])
+{
+    double n[3];
+    if (!glint_plan_bumps(plan) || !plan->patterns->of[tile->surface.material[i]].slope)
+        return true;
+    for (int c = 0; c < 3; c++)
+        n[c] = glint_real_at(tile->unbumped[c], plan->desc.precision, i);
+    return vec_dot(n, direction) > 0;
+}
+
 void glint_event_find_directions(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
@@ -85,7 +139,7 @@ void glint_event_find_directions(glint_batch *batch, const glint_tile *tile, con
             glint_real_put(batch->ratio, precision, i, glint_event_ratio(batch, tile, frame, i));
         }
     if (glint_plan_bumps(frame->plan))
-        glint_tile_bounce_normals(tile, frame->plan, batch->wanted, batch->ratio, args.normal);
+        find_normals(batch, tile, frame->plan, args.normal);
     frame->stages->geometry[precision].bounce(&args);
 }
 

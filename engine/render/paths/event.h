@@ -43,6 +43,8 @@ void glint_ray_begin(const glint_batch *batch, const glint_tile *tile, const gli
 /// The caller sets throughput and slopes. A ray of the eye gets the event's term.
 void glint_ray_continue(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                         glint_event event, glint_rays *rays, uint32_t n);
+/// Returns whether a direction scattered around a bumped normal leaves the surface of sample `i`.
+bool glint_event_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i, const double direction[3]);
 /// Updates the media of a ray that crosses the surface of sample i. A material that transmits has an inside; any
 /// other translucent surface has none.
 void glint_event_cross(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, glint_media *media);

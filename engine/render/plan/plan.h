@@ -17,8 +17,8 @@
 #include "engine/glint_inspect.h"
 #include "engine/render/effects/derivative/plan.h"
 #include "engine/render/effects/indirect/plan.h"
-#include "engine/render/effects/pattern/plan.h"
-#include "engine/render/effects/translucent/plan.h"
+#include "engine/render/pattern/plan.h"
+#include "engine/render/plan/translucent.h"
 #include "engine/render/geometry/geometry.h"
 #include "engine/render/geometry/media.h"
 #include "engine/render/plan/stage.h"
@@ -51,7 +51,7 @@ typedef struct glint_plan_light {
     bool is_spot;
     glint_spot spot;
     uint32_t source; ///< index of the described light in the scene
-    uint32_t group; ///< in frames with light passes: its group, see effects/light_groups/plan.h
+    uint32_t group; ///< in frames with light passes: its group, see light_groups/plan.h
     /// area light: its sample sets, one after another; otherwise NULL
     const glint_light_sample *light_samples;
     const glint_light_sample *cap; ///< if its shadows are computed with caps: describes the whole light; otherwise NULL

@@ -81,6 +81,8 @@ typedef struct glint_stage {
     const char *name;
     const char *doc; ///< the result in a few words, for `glint explain`
     const char *effect, *caller; ///< the effect and the option that asks for it, for `glint explain`; NULL: not listed
+    const char *calls; ///< other effects whose functions this effect calls, with spaces between; NULL: none.
+        ///< tests/circles.lua compares it with the symbols
     /// Fills the tables of the stage: in plan->own[id], one block that the plan frees, or in fields of the plan. Called
     /// in the order of the list, when geometry, materials and lights are known. NULL: the stage has no tables. `effect`
     /// is listed if there is such a block.

@@ -18,12 +18,12 @@
 #define GLINT_STAGES_H
 
 #include "engine/base/machine.h"
-#include "engine/render/effects/adaptive/contract.h"
+#include "engine/render/adaptive/contract.h"
 #include "engine/render/effects/bounce/contract.h"
 #include "engine/render/effects/derivative/contract.h"
 #include "engine/render/effects/indirect/contract.h"
 #include "engine/render/effects/microfacet/contract.h"
-#include "engine/render/effects/pattern/contract.h"
+#include "engine/render/pattern/contract.h"
 #include "engine/render/effects/raster/contract.h"
 #include "engine/render/effects/rough/contract.h"
 #include "engine/render/effects/vertex_shading/contract.h"

@@ -1,7 +1,7 @@
 /// The working memory of a tile that only some frames need. It is allocated for the first such frame, and kept for
 /// later ones.
 #include "engine/base/alloc.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 #include <stdlib.h>
 

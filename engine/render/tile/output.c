@@ -1,6 +1,6 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 #include <string.h>
 

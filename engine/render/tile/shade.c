@@ -2,7 +2,7 @@
 /// samples of a tile together, so that the sums stay in registers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 #include <stdlib.h>
 #include <string.h>

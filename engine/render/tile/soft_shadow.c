@@ -1,5 +1,5 @@
 /// Sums the samples of an area light as they are computed, without storing each.
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /// Calls the stages of a tile: fills in the kernels' arguments from plan and memory.
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 #include "engine/render/stages/light/cone_sample.h"
 #include "engine/render/stages/simd/coefficients.h"
 

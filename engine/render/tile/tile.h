@@ -4,7 +4,7 @@
 
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
-#include "engine/render/effects/adaptive/refine.h"
+#include "engine/render/adaptive/refine.h"
 #include "engine/render/plan/plan.h"
 #include "engine/render/reuse/reuse.h"
 
@@ -114,7 +114,7 @@ typedef struct glint_tile_sample {
             ///< first sample; `lit` and `unoccluded` of each sample are those of all samples
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
-    float *planes; ///< results of programs, see effects/pattern/plan.h; NULL in frames without programs
+    float *planes; ///< results of programs, see pattern/plan.h; NULL in frames without programs
 } glint_tile_sample;
 
 /// The rays of the current sample. Arrays of real have the size of doubles, here and below.
@@ -181,12 +181,12 @@ typedef struct glint_tile {
     struct glint_samples *samples; ///< memory of tile/shade.c; NULL until a frame needs it
     uint32_t own_lights; ///< index of the current sample's first element in `lights`
     const struct glint_batch *batch; ///< the batch whose rays hit the samples; NULL: rays of the eye
-    struct glint_gathered *gathered; ///< memory of effects/adaptive/gather.c; NULL until a frame is adaptive
-    struct glint_differ_work *differ; ///< memory of effects/adaptive/differ.c; NULL until a frame is a base
+    struct glint_gathered *gathered; ///< memory of adaptive/gather.c; NULL until a frame is adaptive
+    struct glint_differ_work *differ; ///< memory of adaptive/differ.c; NULL until a frame is a base
     uint64_t clock; ///< end time of the last timed stage, ns
     glint_tile_counts counts;
     void *shadow_scratch; ///< scratch memory of occlude; owned; NULL until a frame has shadows of area lights
-    struct glint_pattern *pattern; ///< memory of effects/pattern/pattern.c; NULL in frames without programs
+    struct glint_pattern *pattern; ///< memory of pattern/pattern.c; NULL in frames without programs
     double *unbumped[3]; ///< real: normals before bumps; NULL: no bumps
     uint32_t own_planes; ///< index of the current sample's planes among those of samples shaded together
 } glint_tile;
@@ -386,7 +386,7 @@ static inline bool glint_tile_sees_light(const glint_tile *tile, const glint_pla
 /// Returns whether some ray may leave the scene: then the tile's rays are needed.
 bool glint_tile_sees_environment(const glint_tile *tile);
 
-/// effects/adaptive/differ.c: compares the stored pixels of a base, and keeps the pixels that neighbouring tiles
+/// adaptive/differ.c: compares the stored pixels of a base, and keeps the pixels that neighbouring tiles
 /// compare.
 struct glint_differ_work *glint_differ_work_create(void);
 void glint_differ_work_destroy(struct glint_differ_work *work); ///< NULL: nothing
@@ -398,7 +398,7 @@ static inline float *glint_differ_values(struct glint_differ_work *work, int val
 void glint_tile_prefetch_borders(const glint_tile *tile, const glint_refine *refine);
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// effects/adaptive/gather.c: gathers the chosen pixels of a tile in their own groups.
+/// adaptive/gather.c: gathers the chosen pixels of a tile in their own groups.
 struct glint_gathered *glint_gathered_create(void);
 void glint_gathered_destroy(struct glint_gathered *gathered); ///< NULL: nothing
 /// Returns whether light is local, and no stage depends on the position of a pixel in its group or tile.
@@ -428,7 +428,7 @@ double (*glint_tile_gathered_points(glint_tile *tile))[3][GLINT_TILE_SAMPLES];
 void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count,
                                const uint16_t *slots, uint32_t count, uint32_t first, uint32_t samples);
 
-/// effects/adaptive/refine.c: returns whether some pixels of the tile get all samples.
+/// adaptive/refine.c: returns whether some pixels of the tile get all samples.
 bool glint_tile_has_chosen(const glint_tile *tile, const glint_tile_frame *frame);
 /// Makes only the chosen pixels active. Returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);

@@ -1,5 +1,5 @@
 /// The walk of a tile: runs the stages in their order.
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 #include <string.h>
 

@@ -19,7 +19,7 @@
 #include "engine/base/vec.h"
 #include "engine/render/effects/bounce/plan.h"
 #include "engine/render/effects/derivative/work.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -385,6 +385,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 const glint_stage glint_stage_bounce = {
     .name = "bounce",
     .doc = "mirror and refraction rays, rays through translucent surfaces, and the light of these rays",
+    .calls = "derivative",
     .prepare = glint_bounce_prepare,
     .called = called,
     .own = glint_bounce_key,

@@ -1,7 +1,7 @@
 /// Bumps: turns shading normals by the slope of a height that a program computes.
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/inputs.h"
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/pattern/inputs.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 
 #include <string.h>
@@ -134,62 +134,6 @@ static void cut_horizon(glint_tile *tile, const glint_plan *plan, const glint_li
                 if (plan->patterns->of[tile->surface.material[i]].slope && !is_above(tile, plan, light, s, i))
                     light->lit[s][g] &= (uint16_t) ~(bits & -bits);
             }
-}
-
-// ---- Mirrors and glass ----
-
-static void load(void *const array[3], glint_precision precision, uint32_t i, double out[3])
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = glint_real_at(array[c], precision, i);
-}
-
-/// Returns whether light along `d` continues with the normal `n` as with the surface's own normal: reflected on this
-/// side of it, refracted beyond. ratio: see glint_bounce_args.
-static bool goes_on(const double d[3], const double n[3], const double own[3], double ratio)
-{
-    double u[3], reflected[3], refracted[3];
-    vec_normalize(u, d);
-    const double cosine = -vec_dot(n, u), k = 1 - ratio * ratio * (1 - cosine * cosine), s = sqrt(fmax(k, 0));
-    for (int c = 0; c < 3; c++) {
-        reflected[c] = u[c] + 2 * cosine * n[c];
-        refracted[c] = ratio * u[c] + (ratio * cosine - s) * n[c];
-    }
-    return cosine > 0 && vec_dot(reflected, own) > 0 && (!(k > 0) || vec_dot(refracted, own) < 0);
-}
-
-void glint_tile_bounce_normals(const glint_tile *tile, const glint_plan *plan, const uint16_t *wanted,
-                               const void *ratio, const void *normal[3])
-{
-    const glint_precision precision = plan->desc.precision;
-    void *own[3], *perturbed[3];
-    for (int c = 0; c < 3; c++) {
-        own[c] = tile->unbumped[c];
-        perturbed[c] = tile->pattern->bounced[c];
-        normal[c] = tile->pattern->bounced[c];
-        memcpy(perturbed[c], tile->surface.normal[c], tile->group_count * GLINT_GROUP * sizeof(double));
-    }
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        double d[3], n[3], surface[3];
-        if (!glint_has_lane(wanted, i) || !plan->patterns->of[tile->surface.material[i]].slope)
-            continue;
-        load(perturbed, precision, i, n);
-        load(own, precision, i, surface);
-        for (int c = 0; c < 3; c++)
-            d[c] = glint_tile_direction(tile, precision, c, i);
-        for (int c = 0; c < 3 && !goes_on(d, n, surface, glint_real_at(ratio, precision, i)); c++)
-            glint_real_put(perturbed[c], precision, i, surface[c]);
-    }
-}
-
-bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i, const double direction[3])
-{
-    double n[3];
-    if (!glint_plan_bumps(plan) || !plan->patterns->of[tile->surface.material[i]].slope)
-        return true;
-    for (int c = 0; c < 3; c++)
-        n[c] = glint_real_at(tile->unbumped[c], plan->desc.precision, i);
-    return vec_dot(n, direction) > 0;
 }
 
 static glint_key own_key(const glint_plan *plan, glint_key key)

@@ -8,7 +8,7 @@
 #include "engine/render/effects/cut_out/cut_out.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 #include "engine/render/paths/batch.h"
 

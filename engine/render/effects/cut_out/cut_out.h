@@ -2,7 +2,7 @@
 #ifndef GLINT_PATTERN_CUT_OUT_H
 #define GLINT_PATTERN_CUT_OUT_H
 
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 
 /// Finds the points on surfaces that are in holes, one bit per lane.

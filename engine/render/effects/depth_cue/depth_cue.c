@@ -7,7 +7,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/render/effects/depth_cue/depth_cue.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/light_groups/light_groups.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #define GLINT_DERIVATIVE_KERNEL_BEND_H
 
 #include "engine/render/effects/derivative/kernel_sloped.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 /// The rays of VD hits: directions of any length, slopes of origin and direction, and the distances of the hits.

@@ -4,9 +4,9 @@
 #define GLINT_DERIVATIVE_KERNEL_LIGHT_H
 
 #include "engine/render/effects/derivative/kernel_sloped.h"
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_elementary.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_elementary.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 // Sets of inputs that have slopes. Each kernel is compiled for some combinations of these sets.

@@ -3,8 +3,8 @@
 #ifndef GLINT_DERIVATIVE_KERNEL_SLOPED_H
 #define GLINT_DERIVATIVE_KERNEL_SLOPED_H
 
-#include "engine/render/effects/pattern/kernel_elementary.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_elementary.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 /// Selects between two vectors of the same type, whatever type the compiler gives to sums.

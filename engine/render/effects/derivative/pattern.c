@@ -3,7 +3,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/dual.h"
 #include "engine/render/effects/derivative/work.h"
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t
     return (double *)(uintptr_t)glint_derivative_painted(tile, plan, index, field, channel);
 }
 
-// ---- Planes derived from the results of programs; see `finish` in effects/pattern/pattern.c -----------------------
+// ---- Planes derived from the results of programs; see `finish` in pattern/pattern.c -----------------------
 
 /// Returns the normalising factor of Phong's and Blinn-Phong's highlights.
 static glint_dual even_factor(const glint_material_desc *desc, glint_dual s)

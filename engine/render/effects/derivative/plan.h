@@ -5,7 +5,7 @@
 #include "engine/base/dual.h"
 #include "engine/base/hash.h"
 #include "engine/glint_programs.h"
-#include "engine/render/effects/pattern/plan.h"
+#include "engine/render/pattern/plan.h"
 #include "engine/render/program/program.h"
 #include "engine/render/stages/stages.h"
 

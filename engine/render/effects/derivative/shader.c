@@ -3,7 +3,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/render/effects/derivative/work.h"
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 
 #include <math.h>

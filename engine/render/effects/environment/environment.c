@@ -6,7 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/render/effects/environment/directions.h"
 #include "engine/render/effects/environment/plan.h"
-#include "engine/render/effects/pattern/inputs.h"
+#include "engine/render/pattern/inputs.h"
 #include "engine/render/program/program.h"
 #include "engine/render/paths/batch.h"
 

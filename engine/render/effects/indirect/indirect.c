@@ -17,7 +17,7 @@
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 #include "engine/render/effects/indirect/paths.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/light_groups/light_groups.h"
 #include "engine/render/effects/rough/rough.h"
 
 #include <stdlib.h>
@@ -586,6 +586,7 @@ static void release(glint_plan *plan)
 const glint_stage glint_stage_indirect = {
     .name = "indirect",
     .doc = "light from other surfaces and from the background",
+    .calls = "environment rough",
     .prepare = glint_indirect_prepare,
     .release = release,
     .called = called,

@@ -3,8 +3,8 @@
 /// block rays, except surfaces that transmit or are translucent: there rays go on, with a weight reduced by the
 /// surface.
 #include "engine/render/effects/indirect/paths.h"
-#include "engine/render/effects/light_groups/light_groups.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/light_groups/light_groups.h"
+#include "engine/render/pattern/pattern.h"
 
 #include <math.h>
 

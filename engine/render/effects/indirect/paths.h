@@ -100,7 +100,7 @@ static inline bool glint_indirect_leaves(const glint_tile *tile, const glint_pla
     double d[3];
     for (int c = 0; c < 3; c++)
         d[c] = glint_real_at(direction[c], plan->desc.precision, i);
-    return glint_tile_leaves(tile, plan, i, d);
+    return glint_event_leaves(tile, plan, i, d);
 }
 
 /// Finds the points and their numbers of paths. Returns the largest number.

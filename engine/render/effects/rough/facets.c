@@ -16,7 +16,7 @@
 #include "engine/base/math.h"
 #include "engine/base/vec.h"
 #include "engine/render/effects/environment/sky.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 #include "engine/render/effects/rough/rough.h"
 
 #define PI 0x1.921fb54442d18p+1
@@ -309,7 +309,7 @@ glint_event glint_rough_leave(const glint_batch *batch, const glint_tile *tile, 
     to_scene(&v, out, direction);
     const double along = through ? -out[2] : out[2];
     vec_scale(out, direction, through ? -1 : 1);
-    const bool leaves = along > 0 && glint_tile_leaves(tile, frame->plan, i, out);
+    const bool leaves = along > 0 && glint_event_leaves(tile, frame->plan, i, out);
     const double factor = leaves && ray.x >= 0 ? unmasked(&v, ray.x, along, through) : 0;
     for (int c = 0; c < 3; c++)
         weight[c] = rays->throughput[c][n];

@@ -284,6 +284,7 @@ static void add_sent(glint_tile *tile, const glint_tile_frame *frame, glint_samp
 const glint_stage glint_stage_rough = {
     .name = "rough",
     .doc = "rays that rough surfaces reflect and refract, and the light of these rays",
+    .calls = "bounce environment indirect",
     .prepare = prepare,
     .called = called,
     .own = own_key,

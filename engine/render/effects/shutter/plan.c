@@ -6,7 +6,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/light_groups/plan.h"
+#include "engine/render/light_groups/plan.h"
 #include "engine/render/effects/shutter/plan.h"
 
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/render/effects/cut_out/cut_out.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/light_groups/light_groups.h"
 #include "engine/render/effects/transparent_shadow/plan.h"
 #include "engine/render/frame/renderer.h"
 #include "engine/render/paths/event.h"
@@ -660,6 +660,7 @@ static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any
 
 /// Runs as a part of the stages occlude and shade.
 const glint_stage glint_stage_tint = {
+    .calls = "cut_out derivative",
     .called = called,
     .own = own_key,
     .begin = begin_frame,

@@ -1,7 +1,7 @@
 #include "engine/render/effects/vertex_shading/shading_points.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/render/effects/light_groups/plan.h"
+#include "engine/render/light_groups/plan.h"
 #include "engine/render/frame/renderer.h"
 
 #include <stdlib.h>

@@ -36,4 +36,9 @@ static inline glint_shading_points_cached *glint_shading_points_of(const glint_t
     return frame->own[GLINT_STAGE_VERTEX];
 }
 
+/// Caches the light of a block of faces or vertices for each group of lights; nothing without light passes.
+void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
+/// Adds the cached light of each group to the samples that show the faces and vertices of `args`.
+void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
+
 #endif

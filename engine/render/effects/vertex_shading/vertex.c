@@ -6,7 +6,7 @@
 /// for any point.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/light_groups/light_groups.h"
 #include "engine/render/effects/vertex_shading/shading_points.h"
 #include "engine/render/paths/batch.h"
 
@@ -429,6 +429,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
 const glint_stage glint_stage_vertex = {
     .name = "vertex",
     .doc = "light computed once for each face or vertex",
+    .calls = "derivative",
     .called = called,
     .begin = glint_shading_points_begin,
     .end = glint_shading_points_end,

@@ -4,7 +4,7 @@
 /// All of it is double, and the same code for every instruction set: few pixels see a light.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/light_groups/light_groups.h"
+#include "engine/render/light_groups/light_groups.h"
 #include "engine/render/effects/visible_light/plan.h"
 #include "engine/render/paths/batch.h"
 

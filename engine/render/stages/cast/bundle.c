@@ -1,5 +1,5 @@
 // Camera rays, and hits of coherent bundles of rays: rays from one eye, also through pixels at any position.
-#include "engine/render/effects/adaptive/kernel_pixels.h"
+#include "engine/render/adaptive/kernel_pixels.h"
 #include "engine/render/stages/cast/camera.h"
 #include "engine/render/stages/cast/cast.h"
 

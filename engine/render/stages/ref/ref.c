@@ -1,7 +1,7 @@
 /// The scalar reference: every stage of stages.h for one sample at a time, in the order of operations of stages.h,
 /// sharing nothing with the vector bodies. A difference from a vector body is a mistake in one of the two.
 #include "engine/base/sequence.h"
-#include "engine/render/effects/pattern/kernel_coefficients.h"
+#include "engine/render/pattern/kernel_coefficients.h"
 #include "engine/render/stages/simd/coefficients.h"
 #include "engine/render/stages/light/cone_sample.h"
 #include "engine/render/stages/stages.h"
@@ -267,10 +267,10 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
     }
 }
 
-#include "engine/render/effects/pattern/ref.h"
+#include "engine/render/pattern/ref.h"
 #include "engine/render/effects/derivative/ref_bend.h"
 #include "engine/render/effects/derivative/ref.h"
-#include "engine/render/effects/adaptive/ref.h"
+#include "engine/render/adaptive/ref.h"
 
 // ---- tone --------------------------------------------------------------------------------------------------------
 

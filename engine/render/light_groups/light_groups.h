@@ -7,7 +7,7 @@
 #ifndef GLINT_LIGHT_GROUPS_H
 #define GLINT_LIGHT_GROUPS_H
 
-#include "engine/render/effects/light_groups/plan.h"
+#include "engine/render/light_groups/plan.h"
 #include "engine/render/paths/batch.h"
 
 #define GLINT_GROUP_SUMS 3 ///< diffuse, specular and other light
@@ -37,10 +37,5 @@ void glint_groups_add_ambient(const glint_tile *to, const glint_plan *plan, uint
 /// Fades the sums of the current sample, in each pixel and channel; see effects/depth_cue/.
 void glint_groups_fade(const glint_tile *tile, const glint_plan *plan,
                        const double (*transmittance)[GLINT_TILE_SAMPLES]);
-
-/// Caches the light of a block of faces or vertices, and adds it to the samples that show them; see
-/// effects/vertex_shading/.
-void glint_groups_store_block(const glint_tile *tile, const glint_tile_frame *frame, uint32_t block);
-void glint_groups_spread(const glint_tile *tile, const glint_tile_frame *frame, glint_vertex_args *args);
 
 #endif

@@ -2,7 +2,7 @@
 /// tiles compare.
 #include "engine/base/alloc.h"
 #include "engine/film/tone.h"
-#include "engine/render/effects/adaptive/refine.h"
+#include "engine/render/adaptive/refine.h"
 #include "engine/render/tile/tile.h"
 
 #include <math.h>

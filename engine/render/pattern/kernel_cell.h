@@ -4,10 +4,10 @@
 #ifndef GLINT_PATTERN_KERNEL_CELL_H
 #define GLINT_PATTERN_KERNEL_CELL_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_coefficients.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
-#include "engine/render/effects/pattern/kernel_noise.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_coefficients.h"
+#include "engine/render/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_noise.h"
 #include "engine/render/stages/simd/elementary.h"
 
 #define CELL_SIDE 5

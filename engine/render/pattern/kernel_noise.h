@@ -2,10 +2,10 @@
 #ifndef GLINT_PATTERN_KERNEL_NOISE_H
 #define GLINT_PATTERN_KERNEL_NOISE_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_coefficients.h"
-#include "engine/render/effects/pattern/kernel_elementary.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_coefficients.h"
+#include "engine/render/pattern/kernel_elementary.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 /// Combines the upper and the lower half of 64 bits; only the lower 32 bits of the result are used.

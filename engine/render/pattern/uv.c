@@ -1,4 +1,4 @@
-#include "engine/render/effects/pattern/uv.h"
+#include "engine/render/pattern/uv.h"
 #include "engine/base/vec.h"
 #include "engine/render/program/builder.h"
 

@@ -2,7 +2,7 @@
 #ifndef GLINT_PATTERN_KERNEL_EXACT_H
 #define GLINT_PATTERN_KERNEL_EXACT_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_call.h"
 #include "engine/render/stages/simd/elementary.h"
 
 static inline vd d_round(vd x)

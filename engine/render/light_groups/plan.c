@@ -1,5 +1,5 @@
 /// Light passes: the groups of lights, and those that a frame needs.
-#include "engine/render/effects/light_groups/plan.h"
+#include "engine/render/light_groups/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/render/effects/visible_light/plan.h"

@@ -1,6 +1,6 @@
-#include "engine/render/effects/pattern/inputs.h"
+#include "engine/render/pattern/inputs.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/uv.h"
+#include "engine/render/pattern/uv.h"
 #include "engine/render/paths/batch.h"
 
 #include <math.h>

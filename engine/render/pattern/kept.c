@@ -1,6 +1,6 @@
 /// Split programs: the results of their first parts are cached for each tile, and only the second parts run. See
 /// reuse/splits.h.
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 
 #include <string.h>

@@ -2,8 +2,8 @@
 ///
 /// The groups that show a material are taken sixteen at a time. The inputs of the surface are gathered once, then
 /// those of each light, and the program's results are added up in double before the next sixteen come.
-#include "engine/render/effects/light_groups/light_groups.h"
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/light_groups/light_groups.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef GLINT_PATTERN_INPUTS_H
 #define GLINT_PATTERN_INPUTS_H
 
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 
 /// The lanes of a group that show one material.
 typedef struct glint_pattern_lanes {

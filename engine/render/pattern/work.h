@@ -2,7 +2,7 @@
 #ifndef GLINT_PATTERN_WORK_H
 #define GLINT_PATTERN_WORK_H
 
-#include "engine/render/effects/pattern/inputs.h"
+#include "engine/render/pattern/inputs.h"
 
 #define GLINT_BUMP_SLOPES 8 ///< derivatives by p, by the world point, and by u and v
 
@@ -23,7 +23,6 @@ struct glint_pattern {
         ///< glint_shade_planes
     _Alignas(64) double total[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< the same for the groups of a call, before
         ///< rounding
-    _Alignas(64) double bounced[3][GLINT_TILE_SAMPLES]; ///< real: see glint_tile_bounce_normals
     _Alignas(64) double values[GLINT_PROGRAM_OUTPUTS_MAX][GLINT_PROGRAM_LANES]; ///< passed from the first part of a
         ///< program to the second
     double *rows; ///< scratch of the kernel

@@ -1,7 +1,7 @@
 /// Reads the results of materials' programs for single samples.
 #include "engine/base/vec.h"
 #include "engine/render/effects/bounce/plan.h"
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 #include "engine/render/plan/plan.h"
 #include "engine/render/tile/tile.h"
 

@@ -3,9 +3,9 @@
 #ifndef GLINT_PATTERN_KERNEL_TEXEL_H
 #define GLINT_PATTERN_KERNEL_TEXEL_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_elementary.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_elementary.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 /// One level of a texture: the four texels to read, and their weights.

@@ -1,6 +1,6 @@
 // Patterns and shaders.
-#include "engine/render/effects/pattern/kernel_program.h"
-#include "engine/render/effects/pattern/kernel_unit.h"
+#include "engine/render/pattern/kernel_program.h"
+#include "engine/render/pattern/kernel_unit.h"
 
 #if GLINT_WITH(PROGRAM)
 KERNEL(program, glint_program_args)

@@ -1,4 +1,4 @@
-#include "engine/render/effects/translucent/plan.h"
+#include "engine/render/plan/translucent.h"
 
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"

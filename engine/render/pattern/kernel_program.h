@@ -2,12 +2,12 @@
 #ifndef GLINT_PATTERN_KERNEL_PROGRAM_H
 #define GLINT_PATTERN_KERNEL_PROGRAM_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_cell.h"
-#include "engine/render/effects/pattern/kernel_elementary.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
-#include "engine/render/effects/pattern/kernel_noise.h"
-#include "engine/render/effects/pattern/kernel_texel.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_cell.h"
+#include "engine/render/pattern/kernel_elementary.h"
+#include "engine/render/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_noise.h"
+#include "engine/render/pattern/kernel_texel.h"
 #include "engine/render/stages/simd/elementary.h"
 
 static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {

@@ -93,12 +93,6 @@ static inline const double *glint_color_at(const float *planes, const glint_plan
     return buffer;
 }
 
-/// Computes the normals used for reflection and refraction. If the bumped normal would send light through the surface
-/// of a mirror, or not through the surface of glass, the unbumped normal is used. ratio: see glint_bounce_args.
-void glint_tile_bounce_normals(const glint_tile *tile, const glint_plan *plan, const uint16_t *wanted,
-                               const void *ratio, const void *normal[3]);
-/// Returns whether a direction scattered around a bumped normal leaves the surface.
-bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i, const double direction[3]);
 
 /// The input of shaders for one light: the lanes that it reaches, and its strength there.
 typedef struct glint_shader_light {

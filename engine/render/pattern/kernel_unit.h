@@ -2,8 +2,8 @@
 #ifndef GLINT_PATTERN_KERNEL_UNIT_H
 #define GLINT_PATTERN_KERNEL_UNIT_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 /// Computes d / by, where `by` is the length of d.

@@ -1,5 +1,5 @@
 /// Adaptive sampling: the choice of pixels that get all samples, in a picture with one sample each. Internal. The
-/// rule, and the pixels inside a tile: effects/adaptive/refine.h.
+/// rule, and the pixels inside a tile: adaptive/refine.h.
 ///
 /// Through a lens, a pixel of the base shows one point of the lens, and 4 x 4 neighbours show all 16. A difference at
 /// any of these points is blurred over all of them. So pixels up to GLINT_REFINE_SPREAD away from a differing pair
@@ -8,7 +8,7 @@
 #define GLINT_REFINE_H
 
 #include "engine/base/pool.h"
-#include "engine/render/effects/adaptive/refine.h"
+#include "engine/render/adaptive/refine.h"
 #include "engine/render/plan/plan.h"
 
 #define GLINT_REFINE_SPREAD 2 ///< pixels, in every direction

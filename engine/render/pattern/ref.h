@@ -163,7 +163,7 @@ static double op_highlight(double x, double s)
     return (double)highlight_strength((float)s, log2_of((float)x, (float)(x - 1)));
 }
 
-#include "engine/render/effects/pattern/ref_pattern.h"
+#include "engine/render/pattern/ref_pattern.h"
 
 // ---- the interpreter ---------------------------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@
 /// A frame with adaptive sampling has two steps. The first, the base, takes one sample in the middle of each pixel. The
 /// second takes all samples for the pixels chosen here. Every pixel is bit-identical to that of a frame with one sample
 /// or of a frame with all samples. Pixels within a tile are compared as soon as the tile is rendered. Pixels at the
-/// borders of tiles are compared when all tiles are rendered (effects/adaptive/choose.h), so that the choice does not
+/// borders of tiles are compared when all tiles are rendered (adaptive/choose.h), so that the choice does not
 /// depend on tiles, threads or the cache.
 ///
 /// A pixel and one of its eight neighbours are both chosen if they show two objects, or one object and nothing; if

@@ -1,4 +1,4 @@
-#include "engine/render/effects/adaptive/choose.h"
+#include "engine/render/adaptive/choose.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/film/tone.h"

@@ -8,9 +8,9 @@
 #ifndef GLINT_PATTERN_KERNEL_ELEMENTARY_H
 #define GLINT_PATTERN_KERNEL_ELEMENTARY_H
 
-#include "engine/render/effects/pattern/kernel_call.h"
-#include "engine/render/effects/pattern/kernel_coefficients.h"
-#include "engine/render/effects/pattern/kernel_exact.h"
+#include "engine/render/pattern/kernel_call.h"
+#include "engine/render/pattern/kernel_coefficients.h"
+#include "engine/render/pattern/kernel_exact.h"
 #include "engine/render/stages/simd/elementary.h"
 
 static double scalar_sine(double x, double quarter) { return quarter != 0 ? glint_cos(x) : glint_sin(x); }

@@ -1,8 +1,8 @@
 /// Programs of materials, run for the points that show them: up to sixteen groups at a time, each with its own lanes.
-#include "engine/render/effects/pattern/pattern.h"
+#include "engine/render/pattern/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/render/effects/pattern/work.h"
+#include "engine/render/pattern/work.h"
 #include "engine/render/program/program.h"
 
 #include <math.h>
