@@ -62,24 +62,24 @@ typedef struct glint_scene_desc {
     /// false: `ambient` replaces all light that surfaces receive from each other and from the background
     bool has_indirect;
     /// Indirect light paths from each visible point, in cosine-weighted directions. Their mean light times kd is the
-    /// indirect light. Whole number, 1 .. 65536.
-    double indirect_samples;
-    /// Diffuse surfaces at which a path continues; whole number, 0 .. 2^31. At the next diffuse surface `ambient`
+    /// indirect light. 1 .. 65536.
+    int64_t indirect_samples;
+    /// Diffuse surfaces at which a path continues; 0 .. 2^31. At the next diffuse surface `ambient`
     /// replaces the rest; with 0 that is the first one. The part of a material's `ambient` above its `diffuse` is
     /// emitted light and is always added.
-    double indirect_bounces;
+    int64_t indirect_bounces;
     /// Ambient light is multiplied by the cosine-weighted unoccluded share of the sky above the point. This applies
     /// to `ambient` of a material up to its `diffuse`; the product goes to the pass `indirect`. The part above
     /// `diffuse` is emitted light and stays in the pass `ambient`. Not together with `has_indirect`, which computes
     /// the light that arrives
     bool has_ambient_occlusion;
-    double ambient_occlusion_samples; ///< number of rays from each visible point; whole number, 1 .. 65536
+    int64_t ambient_occlusion_samples; ///< number of rays from each visible point; 1 .. 65536
     /// World units, > 0, may be infinite: more distant surfaces do not occlude. A transmitting surface occludes only
     /// the light that it takes; the ray continues refracted, and the distance starts again there
     double ambient_occlusion_distance;
     /// Number of rays that a rough surface reflects or refracts for each sample of a pixel that shows it, from the
-    /// distribution of its microfacets: whole number, 0 .. 65536; 16 in a new scene. 0: rough surfaces show lamps only
-    double reflection_samples;
+    /// distribution of its microfacets: 0 .. 65536; 16 in a new scene. 0: rough surfaces show lamps only
+    int64_t reflection_samples;
 } glint_scene_desc;
 
 /// Makes an empty scene without a camera. GLINT_ERR_NOMEM.
@@ -149,7 +149,7 @@ typedef struct glint_camera_desc {
     /// Time that the shutter is open, as a fraction of the time between frames, 0 .. 1; default 0, an instant. Used
     /// by callers that plan a frame for several times, see glint_plan_create_exposed
     double shutter;
-    double shutter_times; ///< number of times at which the scene is planned while the shutter is open,
+    int64_t shutter_times; ///< number of times at which the scene is planned while the shutter is open,
         ///< 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
     /// Radius of the lens, world units, >= 0; default 0: a pinhole, which shows everything sharp. Each sample starts
     /// at a point of the lens, in the plane through the eye perpendicular to the view, and passes through the point
@@ -160,8 +160,8 @@ typedef struct glint_camera_desc {
     double focus;
     bool has_focus_point; ///< true: the plane of focus goes through `focus_point`; `focus` must be 0
     double focus_point[3]; ///< finite, in front of the eye
-    /// 0: a round lens, the default; 3 .. 64, whole: a regular polygon inscribed in that circle, a corner up
-    double blades;
+    /// 0: a round lens, the default; 3 .. 64: a regular polygon inscribed in that circle, a corner up
+    int64_t blades;
     double blade_rotation_rad; ///< turns the polygon, counter-clockwise as seen by the eye; default 0
     char name[GLINT_NAME_SIZE]; ///< name for messages; "": none
 } glint_camera_desc;
@@ -252,8 +252,7 @@ typedef struct glint_light_desc {
     const double (*vertices)[3];
     size_t vertex_count;
     bool two_sided; ///< polygon: shines on both sides; default false
-    double samples; ///< area lights: number of shadow rays for each sample of a pixel; whole number, 1 .. 65536;
-        ///< default 16
+    int64_t samples; ///< area lights: number of shadow rays for each sample of a pixel; 1 .. 65536; default 16
     bool has_radiance; ///< area lights: `radiance` gives the strength; `intensity` must then be 1
     /// Name of the light pass that collects this group's lights; "": the light's own name
     char group[GLINT_NAME_SIZE];
@@ -594,10 +593,10 @@ typedef struct glint_mesh_faults {
 /// Makes a mesh of the usable faces, and counts the others instead of failing.
 glint_status glint_mesh_create_counting(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape **out,
                                         glint_error *error);
-/// Makes a sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole
+/// Makes a sphere of `segments`, 3 .. 16384, around the equator and half as many, rounded up, from pole
 /// to pole. The vertices have the sphere's exact normals. `desc` gives shading (default phong), material, sides and
 /// name.
-glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
+glint_status glint_sphere_mesh_create(const double center[3], double radius, int64_t segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 
 // ---- A frame -------------------------------------------------------------------------------------------------------
@@ -710,9 +709,8 @@ typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLIN
 
 /// One frame: its size, samples and passes.
 typedef struct glint_render_desc {
-    /// Whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
-    double width, height;
-    double samples; ///< samples per pixel; whole number, 1 .. 65536; default 1
+    int64_t width, height; ///< pixels, 1 .. GLINT_SIDE_MAX; default 1280 x 720
+    int64_t samples; ///< samples per pixel; 1 .. 65536; default 1
     /// 0 (default): every pixel takes all samples. Above 0, at most 3: each pixel first takes one sample, at its
     /// centre. A pixel takes all samples if it and one of its eight neighbours show different objects, normals 26
     /// degrees apart, or pixel values that differ by more than this, summed over red, green and blue, in fractions of
@@ -721,12 +719,11 @@ typedef struct glint_render_desc {
     double adaptive;
     glint_precision precision; ///< the precision of hits and shadows; default GLINT_PRECISION_DOUBLE
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
-    double seed; ///< whole number, 0 .. 2^53; each seed gives another, equally good sample pattern; 0: the pattern is
-        ///< not shifted
-    /// Longest chain of reflections and refractions; whole number, 0 .. 2^31; default 5. At most 31 if a material has
+    int64_t seed; ///< 0 .. 2^53; each seed gives another, equally good sample pattern; 0: the pattern is not shifted
+    /// Longest chain of reflections and refractions; 0 .. 2^31; default 5. At most 31 if a material has
     /// both and its mirror + transmission is above 1, because rays then double at each surface. From the 17th surface
     /// of a chain on, one of the two rays, chosen at random, represents both
-    double max_depth;
+    int64_t max_depth;
     /// 0 (default): no limit. Above 0, at most 1e9: the most light, in its largest channel, that a random path (indirect
     /// light, rough surfaces) brings from a surface after its first ray, as if the pixel had no other path
     double clamp;
@@ -742,9 +739,8 @@ typedef struct glint_render_desc {
     glint_outline_color outline;
     glint_tone_desc tone;
     /// x, y, width and height, in pixels, of the part of the frame to render. Its pixels are identical to the same
-    /// pixels of the whole frame; the image has the size of the part. Whole numbers within the frame; all 0
-    /// (default): the whole frame
-    double region[4];
+    /// pixels of the whole frame; the image has the size of the part. All 0 (default): the whole frame
+    int64_t region[4];
     /// Derivative number i is stored in the image as pass GLINT_PASS_DERIVATIVE + i. Borrowed by glint_plan_create; a
     /// plan's own description has only the count
     const glint_derivative *derivatives;

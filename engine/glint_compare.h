@@ -74,7 +74,7 @@ glint_status glint_reference_difference(const glint_reference *reference, const 
 // ---- The error of a picture from its own samples -------------------------------------------------------------------
 
 /// Returns the seed of the frame's partner: an independent picture with four times the samples of the frame.
-double glint_partner_seed(const glint_render_desc *desc);
+int64_t glint_partner_seed(const glint_render_desc *desc);
 /// Estimates the error of a picture of at least 2 samples a pixel: the root of the mean squared difference to the
 /// picture of infinitely many samples, over pixels and channels. Both images have the beauty pass.
 ///

@@ -154,7 +154,7 @@ typedef struct glint_overlay_desc {
     /// Lobe: `from` is the normal (has_normal false: the surface's at `point`), `to` the direction to the light. Path:
     /// origin and direction of the ray. Both directions need not be unit
     bool has_normal;
-    double depth; ///< path: most surfaces at which the ray goes on, a whole number 0 .. 63; default 4
+    int64_t depth; ///< path: most surfaces at which the ray goes on, 0 .. 63; default 4
     double aspect; ///< frustum: width of the picture divided by its height, > 0; default 16 / 9
     bool has_radius; ///< arc. false: the radius is a twelfth of the picture's height at the distance of `point`
     /// Arc: its radius. Lobe: length of a highlight of 1; without has_radius 1. Path: length of a segment that hits

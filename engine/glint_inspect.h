@@ -15,7 +15,7 @@ extern "C" {
 /// The type of a field in a description.
 typedef enum glint_field_type {
     GLINT_TYPE_NUMBER, ///< double, finite
-    GLINT_TYPE_WHOLE, ///< double, a whole number
+    GLINT_TYPE_WHOLE, ///< int64_t
     GLINT_TYPE_ANGLE, ///< double, radians; scripts and messages use degrees
     GLINT_TYPE_FLAG, ///< bool
     GLINT_TYPE_VECTOR, ///< double[3], finite
@@ -145,7 +145,7 @@ double glint_mesh_bend(const glint_shape *shape);
 
 /// Returns the arguments with which glint_sphere_mesh_create made a shape. Returns false and writes nothing if
 /// another function made the shape.
-bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
+bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, int64_t *segments);
 
 /// The triangles of a mesh. The pointers belong to the shape.
 typedef struct glint_mesh_data {

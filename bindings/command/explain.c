@@ -8,7 +8,7 @@
 
 static void print_frame(FILE *out, const glintL_run *run, const glint_render_desc *desc)
 {
-    fprintf(out, "%s, frame %" PRId64 ": %.0f x %.0f, %.0f sample%s a pixel, decided in %s precision\n", run->script,
+    fprintf(out, "%s, frame %" PRId64 ": %" PRId64 " x %" PRId64 ", %" PRId64 " sample%s a pixel, decided in %s precision\n", run->script,
             run->explain_frame, desc->width, desc->height, desc->samples, desc->samples == 1 ? "" : "s",
             desc->precision == GLINT_PRECISION_FLOAT ? "float" : "double");
 }
@@ -156,7 +156,7 @@ static void print_json(FILE *out, const glintL_run *run, bool programs)
     glint_ray_counts rays = glint_plan_expected_rays(plan);
     glintL_json(out, "{\"event\":\"plan\",\"script\":%s", run->script);
     fprintf(out,
-            ",\"index\":%" PRId64 ",\"width\":%.0f,\"height\":%.0f,\"samples\":%.0f,\"precision\":\"%s\",\"effects\":[",
+            ",\"index\":%" PRId64 ",\"width\":%" PRId64 ",\"height\":%" PRId64 ",\"samples\":%" PRId64 ",\"precision\":\"%s\",\"effects\":[",
             run->explain_frame, desc->width, desc->height, desc->samples,
             desc->precision == GLINT_PRECISION_FLOAT ? "float" : "double");
     for (size_t i = 0; i < effect_count; i++) {

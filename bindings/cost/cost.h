@@ -38,7 +38,7 @@ typedef struct cost_shaded {
 
 /// A copy of the scene whose spheres have other segments.
 typedef struct cost_copy {
-    double segments; ///< 0: exact
+    int64_t segments; ///< 0: exact
     glint_scene *scene; ///< owned
 } cost_copy;
 
@@ -72,13 +72,13 @@ typedef struct cost_meshes {
     size_t count, globe_count; ///< meshes, and the spheres made of triangles among them; instances count
     bool is_mixed; ///< the meshes have different shadings
     glint_shading shading; ///< shading of one of the meshes
-    double segments; ///< segments of all spheres of triangles; 0: they differ
+    int64_t segments; ///< segments of all spheres of triangles; 0: they differ
 } cost_meshes;
 
 cost_meshes cost_scene_meshes(const cost_scene *scene);
 glint_status cost_scene_set_shading(cost_scene *scene, glint_shading shading, glint_error *error);
 /// Sets the segments of every sphere of triangles; 0: exact spheres. Call it before setting the shading.
-glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_error *error);
+glint_status cost_scene_set_segments(cost_scene *scene, int64_t segments, glint_error *error);
 void cost_scene_restore_meshes(cost_scene *scene);
 void cost_scene_close_meshes(cost_scene *scene); ///< frees the copies
 
@@ -130,7 +130,7 @@ typedef struct cost_setting {
     int shutter_times; ///< 0: the frame is an instant
     bool reuses; ///< rendered after the neighbouring frame, using that frame's cached results
     int shadows, model, shading; ///< indices of words; -1: as in the script
-    double light_samples, segments, numbers[COST_SCENE_NUMBERS]; ///< -1: as in the script; segments 0: exact
+    int64_t light_samples, segments, numbers[COST_SCENE_NUMBERS]; ///< -1: as in the script; segments 0: exact
 } cost_setting;
 
 extern const char *const cost_shading_words[]; ///< by glint_shading; ends with NULL

@@ -57,8 +57,8 @@ static void read_shot(lua_State *L, const cost_study *study, cost_setting *out)
     const int shot = luaL_checkoption(L, 2, "file", SHOTS);
     desc->codes = shot <= AS_BOTH && !glintL_name_is_linear(study->own->output);
     desc->passes = shot == AS_FILE && desc->codes ? 0 : 1u << GLINT_PASS_BEAUTY;
-    desc->samples = luaL_optnumber(L, 3, desc->samples);
-    desc->seed = luaL_optnumber(L, 4, desc->seed);
+    desc->samples = luaL_optinteger(L, 3, desc->samples);
+    desc->seed = luaL_optinteger(L, 4, desc->seed);
     if (lua_toboolean(L, 5)) {
         desc->adaptive = 0;
         desc->precision = GLINT_PRECISION_DOUBLE;
@@ -77,10 +77,10 @@ void cost_setting_read(lua_State *L, const cost_study *study, cost_setting *out)
     out->shadows = word_at(L, "shadows", SHADOWS);
     out->model = word_at(L, "model", MODELS);
     out->shading = word_at(L, "shading", cost_shading_words);
-    out->light_samples = number_at(L, "light_samples", -1);
-    out->segments = number_at(L, "segments", -1); // "exact" is 0
+    out->light_samples = (int64_t)number_at(L, "light_samples", -1);
+    out->segments = (int64_t)number_at(L, "segments", -1); // "exact" is 0
     for (int i = 0; i < COST_SCENE_NUMBERS; i++)
-        out->numbers[i] = number_at(L, cost_scene_numbers[i].name, -1);
+        out->numbers[i] = (int64_t)number_at(L, cost_scene_numbers[i].name, -1);
     read_shot(L, study, out);
 }
 
@@ -122,7 +122,7 @@ static glint_status edit_scene(const cost_setting *setting, glint_scene *scene, 
     glint_scene_desc desc = *glint_scene_get(scene);
     for (int i = 0; i < COST_SCENE_NUMBERS; i++)
         if (setting->numbers[i] >= 0)
-            memcpy((char *)&desc + cost_scene_numbers[i].at, &setting->numbers[i], sizeof(double));
+            memcpy((char *)&desc + cost_scene_numbers[i].at, &setting->numbers[i], sizeof setting->numbers[i]);
     return glint_scene_set(scene, &desc, error);
 }
 

@@ -24,7 +24,7 @@ static void visit_all(const glint_scene *scene, visitor *see, void *data)
         visit(glint_scene_shape_at(scene, i), see, data);
 }
 
-static bool is_globe(const glint_shape *shape, double *segments)
+static bool is_globe(const glint_shape *shape, int64_t *segments)
 {
     double center[3], radius;
     return glint_sphere_mesh_get(shape, center, &radius, segments);
@@ -34,7 +34,7 @@ static void look_at(glint_shape *shape, void *data)
 {
     cost_meshes *meshes = data;
     const glint_shape_desc *desc = glint_shape_get(shape);
-    double segments;
+    int64_t segments;
     if (desc->kind != GLINT_SHAPE_MESH)
         return;
     meshes->is_mixed = meshes->is_mixed || (meshes->count > 0 && desc->shading != meshes->shading);
@@ -102,18 +102,19 @@ void cost_scene_restore_meshes(cost_scene *scene)
 
 static void note_globe(glint_shape *shape, void *data)
 {
-    double segments;
+    int64_t segments;
     bool *any = data;
     *any = *any || is_globe(shape, &segments);
 }
 
 // Makes a sphere of triangles with other segments; 0: the exact sphere that it approximates.
-static glint_status make_globe(const glint_shape *from, double segments, glint_shape **out, glint_error *error)
+static glint_status make_globe(const glint_shape *from, int64_t segments, glint_shape **out, glint_error *error)
 {
     const glint_shape_desc *desc = glint_shape_get(from);
     glint_shape_desc sphere = *desc;
     glint_mesh_desc mesh = glint_mesh_desc_default();
-    double center[3], radius, own;
+    double center[3], radius;
+    int64_t own;
     glint_material *const *materials;
     glint_shape_materials(from, &materials);
     glint_sphere_mesh_get(from, center, &radius, &own);
@@ -132,9 +133,9 @@ static glint_status make_globe(const glint_shape *from, double segments, glint_s
 }
 
 // Copies a shape; the caller owns a reference. Shapes without a sphere of triangles are shared.
-static glint_status copy_shape(glint_shape *from, double segments, glint_shape **out, glint_error *error)
+static glint_status copy_shape(glint_shape *from, int64_t segments, glint_shape **out, glint_error *error)
 {
-    double own;
+    int64_t own;
     bool any = false;
     visit(from, note_globe, &any);
     if (!any) {
@@ -159,7 +160,7 @@ static glint_status copy_shape(glint_shape *from, double segments, glint_shape *
     return status;
 }
 
-static glint_status copy_scene(glint_scene *from, double segments, glint_scene *to, glint_error *error)
+static glint_status copy_scene(glint_scene *from, int64_t segments, glint_scene *to, glint_error *error)
 {
     glint_status status = glint_scene_set(to, glint_scene_get(from), error);
     for (size_t i = 0; i < glint_scene_light_count(from) && !status; i++)
@@ -175,7 +176,7 @@ static glint_status copy_scene(glint_scene *from, double segments, glint_scene *
 }
 
 // Copies live until the study ends, so that their indices are built only once.
-glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_error *error)
+glint_status cost_scene_set_segments(cost_scene *scene, int64_t segments, glint_error *error)
 {
     for (int i = 0; i < scene->copy_count; i++)
         if (scene->copies[i].segments == segments) {

@@ -92,7 +92,7 @@ void cost_add_subject(lua_State *L, const cost_study *study)
     }
     for (int i = 0; i < COST_SCENE_NUMBERS; i++)
         glintL_set_number(L, cost_scene_numbers[i].name,
-                          *(const double *)((const char *)desc + cost_scene_numbers[i].at));
+                          (double)*(const int64_t *)((const char *)desc + cost_scene_numbers[i].at));
     glintL_set_flag(L, "has_indirect", desc->has_indirect);
     glintL_set_flag(L, "has_ambient_occlusion", desc->has_ambient_occlusion);
     glintL_set_flag(L, "has_bounce", has_bounce(&study->scene));

@@ -239,7 +239,8 @@ static void push_list(lua_State *L, const void *desc)
 // ---- A chart as a picture ----
 
 typedef struct save_options {
-    double width, height, dpi;
+    int64_t width, height;
+    double dpi;
 } save_options;
 
 // Renders a scene without lights on one thread.
@@ -266,8 +267,8 @@ static glint_status draw(glint_scene *scene, const save_options *options, glint_
 static int save(lua_State *L)
 {
     static const glintL_field fields[] = {
-        { .name = "width", .type = GLINT_TYPE_NUMBER, .offset = offsetof(save_options, width) },
-        { .name = "height", .type = GLINT_TYPE_NUMBER, .offset = offsetof(save_options, height) },
+        { .name = "width", .type = GLINT_TYPE_WHOLE, .offset = offsetof(save_options, width), .low = 1, .high = GLINT_SIDE_MAX },
+        { .name = "height", .type = GLINT_TYPE_WHOLE, .offset = offsetof(save_options, height), .low = 1, .high = GLINT_SIDE_MAX },
         { .name = "dpi", .type = GLINT_TYPE_NUMBER, .offset = offsetof(save_options, dpi) },
         { .name = NULL },
     };

@@ -129,7 +129,7 @@ const glintL_field glintL_path_fields[] = {
     { .name = "scene", GLINTL_CUSTOM(read_scene, push_scene) },
     { .name = "origin", .type = GLINT_TYPE_VECTOR, .offset = AT(from), .required = true },
     { .name = "direction", .type = GLINT_TYPE_DIRECTION, .offset = AT(to), .required = true },
-    { .name = "depth", .type = GLINT_TYPE_NUMBER, .offset = AT(depth) },
+    { .name = "depth", .type = GLINT_TYPE_WHOLE, .offset = AT(depth), .low = 0, .high = 63 },
     { .name = "reach", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .set_offset = AT(has_radius) },
     CURVE,
     LOOKS,

@@ -8,7 +8,8 @@
 typedef struct arguments {
     glint_mesh_desc desc;
     unsigned format; // format of packed numbers: 0 not packed, 1 f32, 2 f64
-    double center[3], radius, segments;
+    double center[3], radius;
+    int64_t segments;
 } arguments;
 
 static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
@@ -41,7 +42,7 @@ static const glintL_field FIELDS[] = {
 static const glintL_field SPHERE_FIELDS[] = {
     { .name = "center", .type = GLINT_TYPE_VECTOR, .offset = AT(center), .required = true },
     { .name = "radius", .type = GLINT_TYPE_NUMBER, .offset = AT(radius), .required = true },
-    { .name = "segments", .type = GLINT_TYPE_NUMBER, .offset = AT(segments), .required = true },
+    { .name = "segments", .type = GLINT_TYPE_WHOLE, .offset = AT(segments), .low = 3, .high = 16384, .required = true },
     EVERY_MESH,
     { .name = NULL },
 };

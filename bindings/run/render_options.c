@@ -1,5 +1,6 @@
 // The fields that describe a frame and its file, read from a script's table and from the command line.
 #include <errno.h>
+#include <inttypes.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@
 #define DEPTH_MAX 2147483648.0 // 2^31
 
 typedef enum sort {
-    WHOLE, // a whole number, stored as double, min .. max
+    WHOLE, // an int64_t, min .. max
     REAL, // a number, also with fractions, min .. max
     CHOICE, // an enum
     COLORS, // a colour map and its range
@@ -20,7 +21,7 @@ typedef enum sort {
     FLAG, // a bool
     OUTPUT,
     PASSES,
-    REGION, // four doubles; all 0: none
+    REGION, // four int64_t; all 0: none
     ORBIT
 } sort;
 
@@ -129,12 +130,14 @@ static bool set_number(glintL_render *render, const detail *option, double value
 {
     char *field = (char *)render + option->offset;
     int bits = value == 16 ? 16 : 8;
+    int64_t whole;
     switch (option->sort) {
     case WHOLE:
         // Within the limits the conversion is exact. NaN fails the comparison.
         if (!(value >= option->min && value <= option->max) || value != (double)(int64_t)value)
             return false;
-        memcpy(field, &value, sizeof value);
+        whole = (int64_t)value;
+        memcpy(field, &whole, sizeof whole);
         return true;
     case REAL:
         if (!(value >= option->min && value <= option->max))
@@ -286,19 +289,19 @@ static bool read_passes(const char *text, glintL_render *render, char message[GL
 }
 
 // Reads "X,Y,W,H". Planning the frame checks that the region is inside the frame.
-static bool set_region(double region[4], const char *text)
+static bool set_region(int64_t region[4], const char *text)
 {
-    double read[4];
+    int64_t read[4];
     const char *at = text;
     for (int i = 0; i < 4; i++) {
         char *end;
         const long value = strtol(at, &end, 10);
         if (end == at || *at < '0' || *at > '9' || value > GLINT_SIDE_MAX || *end != (i < 3 ? ',' : '\0'))
             return false;
-        read[i] = (double)value;
+        read[i] = value;
         at = end + 1;
     }
-    if (!(read[2] >= 1 && read[3] >= 1))
+    if (read[2] < 1 || read[3] < 1)
         return false;
     memcpy(region, read, sizeof read);
     return true;
@@ -462,7 +465,7 @@ static void push_passes(lua_State *L, const glintL_render *render)
     }
 }
 
-static void push_region(lua_State *L, const double region[4])
+static void push_region(lua_State *L, const int64_t region[4])
 {
     if (region[2] == 0) {
         lua_pushnil(L);
@@ -470,7 +473,7 @@ static void push_region(lua_State *L, const double region[4])
     }
     lua_createtable(L, 4, 0);
     for (int i = 0; i < 4; i++) {
-        lua_pushinteger(L, (lua_Integer)region[i]);
+        lua_pushinteger(L, region[i]);
         lua_rawseti(L, -2, i + 1);
     }
 }
@@ -479,10 +482,14 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[96])
 {
     const detail *option = &details[field];
     const char *at = (const char *)render + option->offset;
+    int64_t whole;
     double number;
     unsigned value;
     switch (option->sort) {
     case WHOLE:
+        memcpy(&whole, at, sizeof whole);
+        snprintf(out, 64, "%" PRId64, whole);
+        return true;
     case REAL:
         memcpy(&number, at, sizeof number);
         snprintf(out, 64, "%.17g", number);
@@ -501,7 +508,7 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[96])
         glintL_spell_colormap(render->colormap, render->range, out);
         return true;
     case REGION:
-        snprintf(out, 96, "%.0f,%.0f,%.0f,%.0f", render->desc.region[0], render->desc.region[1],
+        snprintf(out, 96, "%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64, render->desc.region[0], render->desc.region[1],
                  render->desc.region[2], render->desc.region[3]);
         return render->desc.region[2] > 0;
     case ORBIT:
@@ -516,12 +523,13 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
     const detail *option = &details[field];
     const char *at = (const char *)render + option->offset;
     char spelt[64];
+    int64_t whole;
     double number;
     unsigned value;
     switch (option->sort) {
     case WHOLE:
-        memcpy(&number, at, sizeof number);
-        lua_pushinteger(L, (lua_Integer)number);
+        memcpy(&whole, at, sizeof whole);
+        lua_pushinteger(L, whole);
         break;
     case REAL:
         memcpy(&number, at, sizeof number);

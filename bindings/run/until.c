@@ -117,7 +117,7 @@ static glintL_work *step(ladder *l, double samples)
 
 static void mark_unfinished(const ladder *l, glintL_work *work)
 {
-    snprintf(work->unfinished, sizeof work->unfinished, "%.0f samples, error %.9g", work->render.desc.samples, l->errors[0]);
+    snprintf(work->unfinished, sizeof work->unfinished, "%" PRId64 " samples, error %.9g", work->render.desc.samples, l->errors[0]);
 }
 
 // Returns whether a work's file is the unfinished picture of its samples.
@@ -260,7 +260,7 @@ glintL_work *glintL_refine(glintL_run *run, const glintL_frame_planner *planner,
         samples = more;
     }
     if (!work && l.left)
-        glintL_run_warn(run, "frame %" PRId64 ": %s has the picture of %.0f samples, error %.3g%s", index, l.left->files[0].path,
+        glintL_run_warn(run, "frame %" PRId64 ": %s has the picture of %" PRId64 " samples, error %.3g%s", index, l.left->files[0].path,
                         l.left->render.desc.samples, l.left->error, *l.left->files[0].key ? "; the same command goes on from there" : "");
     if (work)
         work->follows_step = l.left != NULL;

@@ -367,7 +367,8 @@ static void look_for_bends(const look *l, const glint_shape *shape, const ball *
 {
     char name[160];
     bool shadows = false;
-    double center[3], radius, segments;
+    double center[3], radius;
+    int64_t segments;
     if (!glint_sphere_mesh_get(shape, center, &radius, &segments))
         return;
     if (glint_shape_get(shape)->terminator > 0)

@@ -39,6 +39,17 @@ static double read_finite(lua_State *L, int index, const char *path)
     return x;
 }
 
+// Reads a whole number; the engine checks its range.
+static int64_t read_whole(lua_State *L, int index, const char *path, const glintL_field *field)
+{
+    char range[80];
+    const double x = read_finite(L, index, path);
+    snprintf(range, sizeof range, "whole number %.15g .. %.15g", field->low, field->high);
+    if (fabs(x) > 0x1p62 || x != floor(x))
+        glintL_refuse(L, index, path, field->expected ? field->expected : range);
+    return (int64_t)x;
+}
+
 // Reads an enum, which the engine stores as an int, as GCC and Clang do.
 static void read_enum(lua_State *L, int index, const char *path, const char *const *names, void *out)
 {
@@ -217,9 +228,13 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         return;
     }
     double x;
+    int64_t whole;
     switch (field->type) {
-    case GLINT_TYPE_NUMBER:
     case GLINT_TYPE_WHOLE:
+        whole = read_whole(L, index, full, field);
+        memcpy(out, &whole, sizeof whole);
+        break;
+    case GLINT_TYPE_NUMBER:
     case GLINT_TYPE_ANGLE:
         if (!(field->takes & GLINT_TAKES_VARIABLE) || !glintL_read_duals(L, index, full, false, 1, &x))
             x = isinf(field->high) ? glintL_read_number(L, index, full) : read_finite(L, index, full);
@@ -380,8 +395,10 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
     }
     switch (field->type) {
     case GLINT_TYPE_NUMBER:
-    case GLINT_TYPE_WHOLE:
         lua_pushnumber(L, *(const double *)in);
+        break;
+    case GLINT_TYPE_WHOLE:
+        lua_pushnumber(L, (lua_Number)*(const int64_t *)in);
         break;
     case GLINT_TYPE_ANGLE:
         lua_pushnumber(L, to_degrees(*(const double *)in));

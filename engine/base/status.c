@@ -30,12 +30,12 @@ glint_status glint_check_range(const char *name, double value, double min, doubl
     return glint_fail(error, GLINT_ERR_INVALID, "%s: %s expected, got %.15g", name, allowed, value);
 }
 
-glint_status glint_check_whole(const char *name, double value, double min, double max, glint_error *error)
+glint_status glint_check_whole(const char *name, int64_t value, int64_t min, int64_t max, glint_error *error)
 {
-    if (value >= min && value <= max && value == floor(value))
+    if (value >= min && value <= max)
         return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_INVALID, "%s: whole number %.15g .. %.15g expected, got %.15g", name, min, max,
-                      value);
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: whole number %lld .. %lld expected, got %lld", name, (long long)min,
+                      (long long)max, (long long)value);
 }
 
 glint_status glint_check_vector(const char *name, const double v[3], glint_error *error)

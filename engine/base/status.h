@@ -21,7 +21,7 @@ glint_status glint_fail_nomem(glint_error *error);
 /// Check one field; on failure the message reads "<name>: <what is allowed> expected, got <value>".
 glint_status glint_check_range(const char *name, double value, double min, double max, const char *allowed,
                                glint_error *error);
-glint_status glint_check_whole(const char *name, double value, double min, double max, glint_error *error);
+glint_status glint_check_whole(const char *name, int64_t value, int64_t min, int64_t max, glint_error *error);
 glint_status glint_check_vector(const char *name, const double v[3], glint_error *error); ///< finite
 glint_status glint_check_direction(const char *name, const double v[3], glint_error *error); ///< finite, not zero
 glint_status glint_check_color(const char *name, const double v[3], glint_error *error); ///< finite, >= 0

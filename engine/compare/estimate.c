@@ -14,12 +14,12 @@
 #define ROW 256 ///< pixels that are converted at a time
 #define SEEDS 0x400000 ///< partner seeds are below this, so that a shift keeps all of its digits
 
-double glint_partner_seed(const glint_render_desc *desc)
+int64_t glint_partner_seed(const glint_render_desc *desc)
 {
     if (!desc)
         return 0;
     const uint64_t mixed = glint_sequence_mix((uint64_t)desc->seed, (uint64_t)desc->samples);
-    const double seed = (double)(1 + mixed % (SEEDS - 2));
+    const int64_t seed = (int64_t)(1 + mixed % (SEEDS - 2));
     return seed == desc->seed ? seed + 1 : seed;
 }
 

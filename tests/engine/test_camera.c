@@ -50,7 +50,6 @@ static void test_projection(void **state)
     (void)state;
     for (int scale = 1; scale <= 3; scale++) {
         glint_camera_desc desc = camera_at(shift);
-        glint_render_desc frame = glint_render_desc_default();
         glint_plan_camera camera;
         desc.fx = 812.5;
         desc.fy = 790.25;
@@ -59,9 +58,7 @@ static void test_projection(void **state)
         desc.cy = 255.5;
         desc.w = 640;
         desc.h = 480;
-        frame.width = scale * desc.w;
-        frame.height = scale * desc.h;
-        glint_plan_camera_init(&camera, &desc, &frame);
+        glint_plan_camera_init(&camera, &desc, scale * desc.w, scale * desc.h);
         for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
             double q[3], seen[2];
             for (int r = 0; r < 3; r++)

@@ -7,16 +7,16 @@
 /// A partner has another seed than the frame, always the same one, whose shift has all of its digits.
 static void test_partner_seed(void **state)
 {
-    static const double seeds[] = { 0, 1, 2, 7, 123456, 0x1p53 };
+    static const int64_t seeds[] = { 0, 1, 2, 7, 123456, INT64_C(1) << 53 };
     (void)state;
-    double before = 0;
+    int64_t before = 0;
     for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
-        for (double samples = 2; samples <= 65536; samples *= 2) {
+        for (int64_t samples = 2; samples <= 65536; samples *= 2) {
             glint_render_desc desc = glint_render_desc_default();
             desc.samples = samples;
             desc.seed = seeds[i];
-            const double seed = glint_partner_seed(&desc);
-            assert_true(seed == floor(seed) && seed > 0 && seed < 0x1p22 && seed != desc.seed && seed != before);
+            const int64_t seed = glint_partner_seed(&desc);
+            assert_true(seed > 0 && seed < 1 << 22 && seed != desc.seed && seed != before);
             assert_true(seed == glint_partner_seed(&desc));
             desc.seed = before = seed;
             assert_true(glint_partner_seed(&desc) != seed);

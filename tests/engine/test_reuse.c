@@ -54,7 +54,7 @@ typedef enum kind {
     COLOR, ///< three numbers, some of which are 0
     VECTOR,
     NUMBER,
-    WHOLE, ///< a whole number stored as a double
+    WHOLE, ///< a whole number, int64_t
     FLAG,
     CHOICE, ///< an enumeration or int below `high`
     BITS, ///< a mask of `high` bits
@@ -195,9 +195,9 @@ static void set_transform(glint_transform *out)
 }
 
 /// Sets a region inside the smallest frame, or none.
-static void set_region(double out[4])
+static void set_region(int64_t out[4])
 {
-    const double region[4] = { draw(30), draw(20), 1 + draw(30), 1 + draw(20) };
+    const int64_t region[4] = { draw(30), draw(20), 1 + draw(30), 1 + draw(20) };
     for (int i = 0; i < 4; i++)
         out[i] = draw(2) ? region[i] : 0;
     for (int i = 0; i < 4; i++)
@@ -226,6 +226,7 @@ static void set_field(const field *f, void *desc)
 {
     void *at = (char *)desc + f->offset;
     double numbers[3];
+    int64_t count;
     int32_t whole;
     for (int c = 0; c < 3; c++)
         numbers[c] = uniform(f->low, f->high);
@@ -242,8 +243,8 @@ static void set_field(const field *f, void *desc)
         memcpy(at, numbers, sizeof *numbers);
         break;
     case WHOLE:
-        numbers[0] = f->low + draw((uint32_t)(f->high - f->low) + 1);
-        memcpy(at, numbers, sizeof *numbers);
+        count = (int64_t)f->low + draw((uint32_t)(f->high - f->low) + 1);
+        memcpy(at, &count, sizeof count);
         break;
     case FLAG:
         *(bool *)at = draw(2);

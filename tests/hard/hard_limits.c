@@ -396,9 +396,9 @@ static void check_sides(void)
         glint_image_release(image);
     }
     // I4: the engine allocates nothing for refused sizes, and can count all pixels and samples of the largest size.
-    const double refused[][2] = { { 65536, 65536 }, { 65536, 1 }, { 1, 65536 },     { 1, 0 },
-                                  { 0, 1 },         { 1.5, 2 },   { NAN, 2 },       { 2, NAN },
-                                  { HUGE_VAL, 2 },  { -1, 5 },    { 1e300, 1e300 }, { 4294967297, 1 } };
+    const int64_t refused[][2] = { { 65536, 65536 }, { 65536, 1 }, { 1, 65536 }, { 1, 0 },
+                                   { 0, 1 },         { -1, 5 },    { 5, -1 },    { 4294967297, 1 },
+                                   { 1, 4294967297 }, { INT64_MAX, INT64_MAX }, { INT64_MIN, 2 } };
     glint_plan *plan;
     glint_error error;
     glint_render_desc desc = glint_render_desc_default();
@@ -407,7 +407,7 @@ static void check_sides(void)
         desc.height = refused[i][1];
         hard_check(glint_plan_create(scene, &desc, &plan, &error) == GLINT_ERR_INVALID &&
                        (!strncmp(error.message, "width", 5) || !strncmp(error.message, "height", 6)),
-                   "%g x %g is refused by name", refused[i][0], refused[i][1]);
+                   "%lld x %lld is refused by name", (long long)refused[i][0], (long long)refused[i][1]);
     }
     desc.width = desc.height = 65535; // each side is allowed, the product of the sides is not
     hard_check(glint_plan_create(scene, &desc, &plan, &error) == GLINT_ERR_INVALID &&

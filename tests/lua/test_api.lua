@@ -289,6 +289,12 @@ function tests.area_lights()
   raises("disk_light.samples: whole number 1 .. 65536 expected, got 0", function() disk.samples = 0 end)
   raises("disk_light.samples: whole number 1 .. 65536 expected, got 1000000000", function() disk.samples = 1e9 end)
   raises("disk_light.samples: whole number 1 .. 65536 expected, got 2.5", function() disk.samples = 2.5 end)
+  for text, huge in pairs { ["1e+300"] = 1e300, ["-1e+300"] = -1e300, ["9.2233720368548e+18"] = 2 ^ 63, ["4294967297"] = 2 ^ 32 + 1,
+    ["9223372036854775807"] = math.maxinteger, ["-9223372036854775808"] = math.mininteger } do
+    raises("disk_light.samples: whole number 1 .. 65536 expected, got " .. text, function() disk.samples = huge end)
+  end
+  disk.samples = 16.0
+  check(disk.samples == 16, "whole numbers of both types")
   raises("disk_light.radius: number >= 0 expected, got -1", function() disk.radius = -1 end)
   raises("disk_light.normal: vector that is not zero expected, got {0, 0, 0}", function() disk.normal = { 0, 0, 0 } end)
   disk.visible = true

@@ -252,8 +252,8 @@ static glint_status check_source(const glint_overlay_desc *desc, glint_error *er
         status = glint_check_vector("origin", desc->from, error);
         if (!status)
             status = glint_check_direction("direction", desc->to, error);
-        if (!status && !(desc->depth >= 0 && desc->depth <= DEPTH_MAX && desc->depth == floor(desc->depth)))
-            status = glint_fail(error, GLINT_ERR_INVALID, "depth: whole number 0 .. %d expected, got %.15g", DEPTH_MAX, desc->depth);
+        if (!status)
+            status = glint_check_whole("depth", desc->depth, 0, DEPTH_MAX, error);
     } else if (!status && !(desc->aspect > 0 && isfinite(desc->aspect))) {
         status = glint_fail(error, GLINT_ERR_INVALID, "aspect: number > 0 expected, got %.15g", desc->aspect);
     }

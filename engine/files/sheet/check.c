@@ -66,11 +66,11 @@ glint_status glint_sheet_check(const glint_sheet_desc *desc, const char *path, g
     if (!status && kind != GLINT_FILE_PNG && !glint_file_is_vector(kind))
         status = glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png, .svg or .pdf expected, got '%.400s'", path);
     if (!status)
-        status = glint_check_whole("cell_count", (double)desc->cell_count, 1, 1e6, error);
+        status = glint_check_whole("cell_count", (int64_t)desc->cell_count, 1, 1000000, error);
     if (!status)
         status = glint_check_whole("columns", desc->columns, 1, GLINT_SIDE_MAX, error);
     if (!status)
-        status = glint_check_whole("difference", (double)desc->difference, 0, (double)desc->cell_count, error);
+        status = glint_check_whole("difference", (int64_t)desc->difference, 0, (int64_t)desc->cell_count, error);
     if (!status && desc->difference)
         status = glint_check_range("gain", desc->gain, 1e-3, 1e6, "number 0.001 .. 1000000", error);
     if (!status)

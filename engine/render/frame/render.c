@@ -346,7 +346,7 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
 /// Lays the plan's overlays over a picture. On failure the picture is released.
 static glint_status cover(const glint_renderer *renderer, const glint_plan *plan, glint_image **image, glint_error *error)
 {
-    const double *r = plan->desc.region;
+    const int64_t *r = plan->desc.region;
     glint_cover *over = NULL;
     glint_status status = glint_cover_hide(renderer->stages, plan, &over, error);
     if (status)
@@ -363,7 +363,7 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
     GLINT_REFUSE_NULL(renderer, error);
     GLINT_REFUSE_NULL(plan, error);
     GLINT_REFUSE_NULL(out, error);
-    const double *r = plan->desc.region;
+    const int64_t *r = plan->desc.region;
     glint_image *whole = NULL, *part = NULL;
     glint_status status = plan->times ? glint_stage_table[GLINT_STAGE_SHUTTER]->render(renderer, plan, &whole, stats, error)
                                       : glint_render_instant(renderer, plan, &whole, stats, error);

@@ -55,7 +55,7 @@ void glint_camera_window(const glint_camera_desc *desc, double width, double hei
     window[3] = span[1] * half[1];
 }
 
-void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render)
+void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, double width, double height)
 {
     double right[3], up[3];
     *out = (glint_plan_camera) { .orthographic = desc->projection == GLINT_PROJECTION_ORTHOGRAPHIC,
@@ -63,7 +63,7 @@ void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *des
     vec_copy(out->eye, desc->eye);
     view_axes(desc, out->forward, right, up);
     double half[2];
-    find_pixels(desc, render->width, render->height, half, out->span);
+    find_pixels(desc, width, height, half, out->span);
     vec_scale(out->right, right, half[0]);
     vec_scale(out->up, up, half[1]);
 }
@@ -84,11 +84,8 @@ void glint_camera_point(const glint_camera_desc *desc, double width, double heig
 {
     if (!desc || !pixel || !point)
         return;
-    glint_render_desc render = glint_render_desc_default();
-    render.width = width;
-    render.height = height;
     glint_plan_camera camera;
-    glint_plan_camera_init(&camera, desc, &render);
+    glint_plan_camera_init(&camera, desc, width, height);
     const double shift = 0.5 - camera.pixel_offset, scale = camera.orthographic ? 1 : distance;
     const double right = (2 * (pixel[0] - shift) - camera.span[0]) * scale;
     const double up = (camera.span[1] - 2 * (pixel[1] - shift)) * scale;
@@ -101,11 +98,8 @@ bool glint_camera_project(const glint_camera_desc *desc, double width, double he
 {
     if (!desc || !point || !pixel || !depth)
         return false;
-    glint_render_desc render = glint_render_desc_default();
-    render.width = width;
-    render.height = height;
     glint_plan_camera camera;
-    glint_plan_camera_init(&camera, desc, &render);
+    glint_plan_camera_init(&camera, desc, width, height);
     const glint_cover_camera seen = glint_plan_cover_camera(&camera);
     double at[2], d[3];
     const double along = glint_cover_project(&seen, point, at);

@@ -33,20 +33,18 @@ glint_render_desc glint_render_desc_default(void)
 
 static glint_status check_region(const glint_render_desc *desc, glint_error *error)
 {
-    const double *r = desc->region;
-    const double side[2] = { desc->width, desc->height };
+    const int64_t *r = desc->region, side[2] = { desc->width, desc->height };
     bool good = true;
     if (r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0)
         return GLINT_OK;
     for (int i = 0; i < 2; i++)
-        good = good && r[i] >= 0 && r[i + 2] >= 1 && r[i] + r[i + 2] <= side[i] && r[i] == floor(r[i]) &&
-               r[i + 2] == floor(r[i + 2]);
+        good = good && r[i] >= 0 && r[i] <= side[i] && r[i + 2] >= 1 && r[i + 2] <= side[i] - r[i];
     if (good)
         return GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID,
-                      "region: whole numbers x, y, width and height within the frame of %.0f x %.0f expected, got %g, "
-                      "%g, %g, %g",
-                      side[0], side[1], r[0], r[1], r[2], r[3]);
+                      "region: whole numbers x, y, width and height within the frame of %lld x %lld expected, got %lld, "
+                      "%lld, %lld, %lld",
+                      (long long)side[0], (long long)side[1], (long long)r[0], (long long)r[1], (long long)r[2], (long long)r[3]);
 }
 
 static glint_status check_render_desc(const glint_render_desc *desc, glint_error *error)
@@ -56,8 +54,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
         status = glint_check_whole("height", desc->height, 1, GLINT_SIDE_MAX, error);
     if (!status && desc->width * desc->height > INT32_MAX)
         status = glint_fail(error, GLINT_ERR_INVALID,
-                            "width: at most 2147483647 pixels in an image expected, got %.0f x %.0f", desc->width,
-                            desc->height);
+                            "width: at most 2147483647 pixels in an image expected, got %lld x %lld",
+                            (long long)desc->width, (long long)desc->height);
     if (!status)
         status = check_region(desc, error);
     if (!status)
@@ -65,11 +63,11 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     if (!status)
         status = glint_check_range("adaptive", desc->adaptive, 0, 3, "number 0 .. 3", error);
     if (!status)
-        status = glint_check_whole("max_depth", desc->max_depth, 0, 0x1p31, error);
+        status = glint_check_whole("max_depth", desc->max_depth, 0, INT64_C(1) << 31, error);
     if (!status)
         status = glint_check_range("clamp", desc->clamp, 0, 1e9, "number 0 .. 1e9", error);
     if (!status)
-        status = glint_check_whole("seed", desc->seed, 0, 0x1p53, error);
+        status = glint_check_whole("seed", desc->seed, 0, INT64_C(1) << 53, error);
     if (!status && desc->precision > GLINT_PRECISION_FLOAT)
         status = glint_fail(error, GLINT_ERR_INVALID, "precision: double or float expected");
     if (!status && desc->visibility > GLINT_VISIBILITY_SCAN)
@@ -158,7 +156,7 @@ static glint_status check_stages(const glint_plan *plan, const glint_scene *scen
 static glint_status fill(glint_plan *plan, const glint_plan_input *from, glint_error *error)
 {
     const glint_scene *scene = from->scene;
-    glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
+    glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), plan->desc.width, plan->desc.height);
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
     if (!status)
         status = glint_geometry_check_reach(plan->geometry, "camera.eye", plan->camera.eye, error);
@@ -313,7 +311,7 @@ static void find_range(double from, double count, double of, int size, uint32_t 
 glint_extent glint_plan_extent(const glint_render_desc *desc)
 {
     glint_extent e;
-    const double *r = desc->region;
+    const int64_t *r = desc->region;
     find_range(r[0], r[2], desc->width, GLINT_TILE_WIDTH, &e.tile_x, &e.across, &e.x, &e.width);
     find_range(r[1], r[3], desc->height, GLINT_TILE_HEIGHT, &e.tile_y, &e.down, &e.y, &e.height);
     return e;

@@ -254,7 +254,8 @@ void glint_plan_centre_offset(const glint_plan *plan, double out[2]);
 /// not at the centre, or goes through a lens.
 bool glint_plan_casts_centres(const glint_plan *plan);
 
-void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
+/// Fills the camera for a picture of this size in pixels, which may have fractions.
+void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, double width, double height);
 /// Returns the camera for overlays.
 glint_cover_camera glint_plan_cover_camera(const glint_plan_camera *camera);
 /// Fills the lens, after the camera.

@@ -112,7 +112,7 @@ static glint_status check_lens(const glint_camera_desc *desc, glint_error *error
     if (!status && desc->has_focus_point && desc->focus > 0)
         status = glint_fail(error, GLINT_ERR_INVALID, "focus: a distance or a point expected, got both");
     if (!status && desc->blades > 0 && desc->blades < 3)
-        status = glint_fail(error, GLINT_ERR_INVALID, "blades: " BLADES " expected, got %.15g", desc->blades);
+        status = glint_fail(error, GLINT_ERR_INVALID, "blades: " BLADES " expected, got %d", (int)desc->blades);
     return status;
 }
 

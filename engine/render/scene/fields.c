@@ -11,7 +11,7 @@
 
 int glint_field_numbers(const glint_object_field *field)
 {
-    if (field->type <= GLINT_TYPE_ANGLE)
+    if (field->type == GLINT_TYPE_NUMBER || field->type == GLINT_TYPE_ANGLE)
         return 1;
     return field->type >= GLINT_TYPE_VECTOR && field->type <= GLINT_TYPE_COLOR ? 3 : 0;
 }
@@ -21,10 +21,13 @@ void glint_fields_reset(const glint_object_field *fields, void *desc)
     for (const glint_object_field *f = fields; f->name; f++) {
         char *at = (char *)desc + f->offset;
         const int value = (int)f->initial[0];
+        const int64_t whole = (int64_t)f->initial[0];
         if (f->type == GLINT_TYPE_FLAG)
             *(bool *)at = value;
         else if (f->type == GLINT_TYPE_CHOICE)
             memcpy(at, &value, sizeof value);
+        else if (f->type == GLINT_TYPE_WHOLE)
+            memcpy(at, &whole, sizeof whole);
         else
             memcpy(at, f->initial, (size_t)glint_field_numbers(f) * sizeof(double));
     }
@@ -85,15 +88,17 @@ static glint_status check(const glint_object_field *f, const char *desc, glint_e
 {
     const char *at = desc + f->offset;
     double v[3] = { 0 };
+    int64_t whole;
     unsigned choice;
     memcpy(v, at, (size_t)glint_field_numbers(f) * sizeof *v);
     switch (f->type) {
     case GLINT_TYPE_NUMBER:
         return check_number(f, *v, error);
     case GLINT_TYPE_WHOLE:
-        if (f->expected && !(*v >= f->low && *v <= f->high && *v == floor(*v)))
-            return glint_fail(error, GLINT_ERR_INVALID, "%s: %s expected, got %.15g", f->name, f->expected, *v);
-        return glint_check_whole(f->name, *v, f->low, f->high, error);
+        memcpy(&whole, at, sizeof whole);
+        if (f->expected && !(whole >= f->low && whole <= f->high))
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: %s expected, got %lld", f->name, f->expected, (long long)whole);
+        return glint_check_whole(f->name, whole, (int64_t)f->low, (int64_t)f->high, error);
     case GLINT_TYPE_ANGLE:
         if (!f->expected || (*v >= f->low && *v <= f->high))
             return GLINT_OK;

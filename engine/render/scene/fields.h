@@ -29,7 +29,7 @@ void glint_fields_reset(const glint_object_field *fields, void *desc);
 /// caller checks the rest: numbers and angles without `expected`, and all types except numbers, vectors, colours,
 /// choices and transforms.
 glint_status glint_fields_check(const glint_object_field *fields, const void *desc, glint_error *error);
-/// Returns how many numbers a field has: 3, 1 or 0.
+/// Returns how many doubles a field has: 3, 1 or 0.
 int glint_field_numbers(const glint_object_field *field);
 
 #endif

@@ -74,7 +74,7 @@ static void make_globe(globe *g, const double center[3], double radius)
             add_face(g, x, y, &corner);
 }
 
-glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
+glint_status glint_sphere_mesh_create(const double center[3], double radius, int64_t segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
 {
     GLINT_REFUSE_NULL(center, error);
@@ -119,7 +119,7 @@ glint_status glint_sphere_mesh_create(const double center[3], double radius, dou
     return status;
 }
 
-bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments)
+bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, int64_t *segments)
 {
     if (!shape || !center || !radius || !segments)
         return false;

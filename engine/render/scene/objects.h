@@ -50,8 +50,8 @@ typedef struct glint_mesh {
     uint32_t (*shading_points)[3]; ///< gouraud shading: one index for each combination of vertex, normal and
         ///< material; NULL: equal to the vertex indices
     size_t shading_point_count; ///< 0: not computed yet
-    double center[3], radius, segments; ///< centre, radius and segments of a triangulated sphere; segments 0: the
-        ///< mesh is not one
+    double center[3], radius; ///< of a triangulated sphere
+    int64_t segments; ///< of such a sphere; 0: the mesh is not one
     double bend; ///< see glint_mesh_bend; 0: none, or not computed yet
     glint_closure closure; ///< see glint_mesh_find_closure
 } glint_mesh;

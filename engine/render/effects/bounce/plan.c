@@ -155,7 +155,7 @@ static double geometric(double g, double depth)
 /// refracted rays.
 static void bound_light(glint_plan *plan)
 {
-    double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
+    double most = 0, depth = (double)plan->desc.max_depth + plan->indirect.bounces;
     for (uint32_t i = 0; i < plan->material_count; i++)
         most = fmax(most, (plan->bouncing ? gain_anywhere(&plan->bouncing[i]) : 0) +
                               (plan->indirect.samples ? as_opaque(plan, i, most_diffuse(plan, i)) : 0));
@@ -173,8 +173,8 @@ static glint_status check_depth(const glint_plan *plan, double most, glint_error
         return GLINT_OK;
     return glint_fail(error, GLINT_ERR_INVALID,
                       "max_depth: expected at most %d, because the mirror + transmission of a material is above 1 "
-                      "(here %.9g), got %.0f",
-                      GLINT_BOUNCE_DEPTH, most, plan->desc.max_depth);
+                      "(here %.9g), got %lld",
+                      GLINT_BOUNCE_DEPTH, most, (long long)plan->desc.max_depth);
 }
 
 /// Refuses meshes whose points move off their faces, if rays go on through a face: they would pass it twice.

@@ -487,7 +487,7 @@ void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *fram
 {
     glint_derivative_work *work = glint_derivative_of(tile);
     const glint_plan *plan = frame->plan;
-    const double share = 1 / plan->desc.samples;
+    const double share = 1.0 / plan->desc.samples;
     double (*sum)[3][GLINT_TILE_SAMPLES] = plan->runs[GLINT_STAGE_DEPTH_CUE] ? work->faded : work->sum;
     for (size_t k = 0; k < plan->derivatives->count; k++)
         for (int c = 0; c < 3; c++) {

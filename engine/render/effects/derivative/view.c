@@ -52,7 +52,7 @@ static glint_dual find_size(const glint_plan *plan, const glint_camera_desc *des
     const glint_dual half = plan->camera.orthographic
                                 ? dual(0.5 * desc->height, 0.5 * slope->height)
                                 : dual(tangent, (1 + tangent * tangent) * (slope->fov_y_rad / 2));
-    return dual_scale(half, 1 / plan->desc.height);
+    return dual_scale(half, 1.0 / plan->desc.height);
 }
 
 /// Returns one over the distance of the plane of focus; see find_focus in plan/lens.c.
