@@ -355,7 +355,7 @@ static void test_region(void **state)
     desc.has_background = true;
     world w = make_world(&desc, 0.3);
     glint_picture *whole = show(&w, "whole.png", NULL);
-    const double region[4] = { 77, 31, 83, 60 };
+    const int64_t region[4] = { 77, 31, 83, 60 };
     memcpy(w.render.region, region, sizeof region);
     glint_picture *part = show(&w, "part.png", NULL);
     uint8_t a[3 * WIDTH], b[3 * WIDTH];

@@ -42,9 +42,10 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
 {
     if (!plan || !desc || !hex)
         return;
-    const glint_render_desc *render = glint_plan_render_desc(plan);
+    const int64_t *r = glint_plan_render_desc(plan)->region;
+    const double region[4] = { r[0], r[1], r[2], r[3] }; // as in the files of earlier versions
     glint_key key = key_of(plan, desc);
-    if (render->region[2] > 0)
-        key = glint_key_add(key, render->region, sizeof render->region);
+    if (r[2] > 0)
+        key = glint_key_add(key, region, sizeof region);
     glint_key_hex(key, hex);
 }
