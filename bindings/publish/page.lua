@@ -115,7 +115,8 @@ local FIGURE <const> = [[
 <style>
   glint-figure { display: block; position: relative; }
   glint-figure > img { display: block; max-width: 100%; height: auto; }
-  glint-figure > svg { position: absolute; inset: 0; width: 100%; height: 100%; white-space: pre; user-select: none; pointer-events: none; }
+  glint-figure > svg { position: absolute; inset: 0; width: 100%; height: 100%; white-space: pre; }
+  glint-figure > svg { user-select: none; pointer-events: none; }
   @media (min-width: @LIMIT@px) { glint-figure > .narrow { display: none; } }
   @media not all and (min-width: @LIMIT@px) { glint-figure > .wide { display: none; } }
 </style>
@@ -148,7 +149,8 @@ local function figure_of(page)
   return fill(FIGURE, {
     TITLE = html(page.title), WIDTH = page.width, HEIGHT = page.height, ATTRIBUTES = attributes_of(page),
     POSTER = the.base64(page.poster), WASM = the.base64(page.wasm), ENGINE = page.engine,
-    FONT = page.font and FONT:format(the.base64(page.font)) or "", LIMIT = page.width + MARGIN, OVERLAYS = overlays_of(page),
+    FONT = page.font and FONT:format(the.base64(page.font)) or "",
+    LIMIT = page.width + MARGIN, OVERLAYS = overlays_of(page),
     JOB = embedded(
       { name = page.script, text = page.source, files = files, same = same, values = values_of(page.params) },
       the.params(page.params)),

@@ -26,19 +26,24 @@ async function test(name, run) {
 
 // A figure of 640 x 400 CSS pixels whose pictures take `fixed` ms and `sample` ms for each sample, on a clock that only
 // pictures move. steps: the limits of samples of its pictures at rest.
-function figure({ fixed, sample, density = 1, samples = 1 }) {
-  const seen = [], clock = { time: 0, now: () => clock.time }
+// params: the script's parameters.
+function figure({ fixed, sample, density = 1, samples = 1, params }) {
+  const seen = [], sizesOfJob = [], clock = { time: 0, now: () => clock.time }
   let wake
   const picture = ({ width, height, samples: wanted = samples, ...rest }, done = wanted) => {
     clock.time += fixed() + sample() * width * height * done
     return { width, height, samples: done, ownSamples: wanted, pixelMs: sample() * width * height * done, ...rest }
   }
-  const job = { samples, render: async options => picture(options), another: async () => job, close: () => {},
+  const render = async options => {
+    sizesOfJob.push(options.width)
+    return picture(options)
+  }
+  const job = { samples, params, render, another: async () => ({ ...job, render: async options => picture(options) }), close: () => {},
     async *steps(options) {
       for (let done = 1; done < (options.samples ?? samples); done *= 2) yield picture(options, done)
       yield picture(options)
     } }
-  const one = { seen, clock, fail: undefined }
+  const one = { seen, sizesOfJob, clock, fail: undefined }
   const renderer = new Renderer(job, { page: () => ({ width: 640, height: 400 }), density: () => density, clock,
     shown: (image, how) => { seen.push({ ...image, ...how }); wake?.() }, failed: error => { one.fail = error; wake?.() } })
   const next = () => new Promise(done => { wake = done })
@@ -78,7 +83,7 @@ await test("a fixed part does not shrink the picture", async () => {
   await one.rest()
 })
 
-await test("a drag changes its size at most once, and answers in 50 ms", async () => {
+await test("a drag changes its size rarely, and answers in 50 ms", async () => {
   let factor = 1
   const one = figure({ fixed: () => 5 * factor, sample: () => 4e-4 * factor })
   await one.step(0)
@@ -117,6 +122,44 @@ await test("a drag whose pictures become much slower shrinks them once more", as
   const last = one.seen.slice(-20)
   assert.ok(last.every(({ width }) => width < 256), `${sizes(last)}`)
   assert.ok(sizes(one.seen).length <= 3, `${sizes(one.seen)}`)
+})
+
+await test("a drag that leaves half of its time grows once more", async () => {
+  let cost = 2e-3
+  const one = figure({ fixed: () => 4, sample: () => cost })
+  await one.step(0)
+  await one.rest()
+  one.seen.length = 0
+  for (let n = 1; n < 40; n++) {
+    if (n === 10) cost = 4e-4 // 90,000 samples fit
+    await one.step(n)
+  }
+  assert.ok(one.seen.slice(-10).every(({ width, height }) => width * height > 60000), `${sizes(one.seen)}`)
+  assert.ok(sizes(one.seen).length <= 4, `${sizes(one.seen)}`)
+})
+
+await test("a very heavy figure keeps 160 pixels while a control moves, or answers in 200 ms", async () => {
+  for (const [sample, wide] of [[5e-3, 160], [0.05, 79]]) {
+    const one = figure({ fixed: () => 4, sample: () => sample })
+    await one.step(0)
+    await one.rest()
+    for (const { width } of (await one.drag()).slice(5)) assert.equal(width, wide)
+    await one.rest()
+  }
+})
+
+await test("the first picture of each drag has the size of a picture whose rays are kept", async () => {
+  const one = figure({ fixed: () => 4, sample: () => 1e-3, params: [{ name: "n" }] })
+  await one.step(0)
+  await one.rest()
+  for (let n = 0; n < 3; n++) {
+    await new Promise(done => setTimeout(done)) // the picture that is not shown
+    const before = one.sizesOfJob.at(-1)
+    const pictures = await one.drag()
+    assert.equal(pictures[0].width, before)
+    await one.rest()
+    assert.equal(one.sizesOfJob.at(-1), pictures.at(-1).width, "another job renders the picture at rest")
+  }
 })
 
 await test("a script that alone takes too long still has a picture", async () => {

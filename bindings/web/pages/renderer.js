@@ -10,7 +10,10 @@ const STEP_MS = 1000        // a picture that takes longer appears in smaller si
 const CHANGE_RATIO = 1.25   // a drag changes the size of its pictures if it is wrong by this factor,
 const CHANGE_MOST = 4       // at most by this factor, since a few pictures may be slow by chance,
 const SETTLED = 4           // after this number of pictures,
-const SLOW = 3              // and once more after this number of pictures that each took twice ANSWER_MS
+const OFF = 3               // and again after this number of pictures that each took twice ANSWER_MS, or half of it,
+const CHANGES = 4           // at most this often
+const LEAST_WIDE = 160      // width of the smallest picture while a control moves, pixels,
+const LEAST_MS = 200        // unless it takes longer than this
 const RECENT = 5            // measurements that count
 const WAIT_MS = 500         // shortest time that is shown as a line
 const SAMPLES = 4           // fewest samples of a pixel at rest
@@ -77,9 +80,10 @@ export class Cost {
 }
 
 // Renders a job's pictures as the controls request them: one at a time, the newest request first. Each change is
-// answered by a picture of the best size for which there is time. A drag, a series of changes without a rest, keeps this
-// size or changes it once, and once more if it is much too slow. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change
-// ends them.
+// answered by a picture of the best size for which there is time. A drag, a series of changes without a rest, keeps the
+// size of the drag before it or changes it once, and again if its pictures take far too long or leave half of the time. At
+// rest the picture gets its full size, in device pixels, and its samples, in steps; a change ends them. Another job renders
+// these pictures, so that the first one keeps what a drag can reuse.
 //   page      returns the size of the picture in the page, CSS pixels: { width, height }
 //   size      returns the picture's own size if it may differ: a page that is too narrow shows it smaller
 //   density   returns the device's pixels per CSS pixel
@@ -92,7 +96,8 @@ export class Renderer {
     this.cost = new Cost()
     this.running = false
     this.next = null
-    this.drag = null // { scale, count, changes, slow }; count: pictures so far, 0 for the first picture of all
+    this.drag = null // { scale, count, changes, slow, quick }; count: pictures so far, 0 for the first picture of all
+    this.scale = 0 // of the last picture of a drag
     this.second = null // a promise of another job of the script, for the pictures at rest
   }
 
@@ -120,10 +125,17 @@ export class Renderer {
     }
   }
 
-  // Returns the scale at which a picture takes ANSWER_MS.
+  // Returns the scale at which a picture takes ANSWER_MS; a small picture may take longer.
   #answerScale() {
-    const { width, height } = this.#sizes(1)
-    return this.cost.isKnown ? Math.min(1, Math.sqrt(this.cost.samplesIn(ANSWER_MS) / (width * height))) : FIRST_SCALE
+    if (!this.cost.isKnown) return FIRST_SCALE
+    const { width, height } = this.#sizes(1), scaleIn = ms => Math.sqrt(this.cost.samplesIn(ms) / (width * height))
+    return Math.min(1, Math.max(scaleIn(ANSWER_MS), Math.min(LEAST_WIDE / width, scaleIn(LEAST_MS))))
+  }
+
+  // Returns the scale of a drag's first picture: that of the last drag, whose results can be reused, if it is about right.
+  #firstScale() {
+    const scale = this.#answerScale(), better = scale / this.scale
+    return Math.max(better, 1 / better) < CHANGE_RATIO ? this.scale : scale
   }
 
   async run() {
@@ -134,7 +146,9 @@ export class Renderer {
       try {
         await this.#answer(request)
         if (!this.next) await this.#rest()
+        const isFirst = !this.drag.count
         if (!this.next) await this.#fill(request)
+        if (!this.next && isFirst && this.job.params?.length > 0) await this.#prepare(request)
       } catch (error) {
         if (error.name !== "AbortError") this.failed(error)
       }
@@ -155,15 +169,26 @@ export class Renderer {
   // Shows a picture of the drag's size.
   async #answer(request) {
     const isFirst = !this.cost.isKnown
-    const drag = this.drag ??= { scale: this.#answerScale(), count: 0, changes: 0, slow: 0 }
+    const drag = this.drag ??= { scale: this.#firstScale(), count: 0, changes: 0, slow: 0, quick: 0 }
     if (!isFirst) drag.count++
     const ms = await this.#picture(this.job, request, drag.scale, isFirst || drag.count === 1)
+    this.scale = drag.scale
     drag.slow = ms > 2 * ANSWER_MS ? drag.slow + 1 : 0
+    drag.quick = ms < ANSWER_MS / 2 ? drag.quick + 1 : 0
     const better = this.#answerScale() / drag.scale
-    const isDue = drag.changes ? drag.changes < 2 && drag.slow >= SLOW && better < 1 : drag.count >= SETTLED
+    const isOff = better < 1 ? drag.slow >= OFF : drag.quick >= OFF
+    const isDue = drag.changes ? drag.changes < CHANGES && isOff : drag.count >= SETTLED
     if (!isDue || Math.max(better, 1 / better) < CHANGE_RATIO) return
     drag.scale *= Math.min(CHANGE_MOST, Math.max(better, 1 / CHANGE_MOST))
     drag.changes++
+    drag.slow = drag.quick = 0
+  }
+
+  // Renders a picture of a drag's size, not shown, so that the first picture of the first drag can reuse its rays.
+  async #prepare(request) {
+    const abort = this.abort = new AbortController(), scale = this.#answerScale()
+    await this.job.render({ ...request, ...this.#sizes(scale), samples: 1, signal: abort.signal })
+    this.scale = scale
   }
 
   // Renders and shows a picture of one sample a pixel. Returns its time. A picture of the same values as the one before it
@@ -174,17 +199,17 @@ export class Renderer {
     this.values = values
     this.shown(image, { coarse: true, ms: this.clock.now() - since })
     const ms = this.clock.now() - since
-    if (!repeats || isCold) this.cost.add({ ms, pixelMs: image.pixelMs, samples: image.width * image.height, isCold })
+    if (!repeats || isCold) this.cost.add({ ms, pixelMs: image.pixelMs, samples: image.width * image.height, isCold: isCold && image.casts !== 0 })
     return ms
   }
 
   // Shows the picture of full size and samples.
   async #fill(request) {
     const sizes = this.#sizes(1), pixels = sizes.width * sizes.height, least = this.job.samples < SAMPLES ? { samples: SAMPLES } : {}
-    const samples = Math.max(SAMPLES, this.job.samples), one = this.cost.of(pixels)
+    const one = this.cost.of(pixels)
     const abort = this.abort = new AbortController()
     try {
-      const job = this.drag.count && this.cost.of(pixels * samples) > STEP_MS / 10 ? await (this.second ??= this.job.another()) : this.job
+      const job = this.drag.count ? await (this.second ??= this.job.another()) : this.job
       let { scale } = this.drag
       for (scale *= 2; scale < 0.75 && one > STEP_MS && !this.next; scale *= 2) {
         this.waits(this.cost.of(pixels * scale * scale))
