@@ -169,13 +169,13 @@ static const char *read_default(lua_State *L, int index, const char *path)
 
 // The fields of a parameter beside its default.
 static const struct {
-    const char *name, *only; // only: the type of parameter that has the field; NULL: all
+    const char *name, *only; // only: the types of parameters that have the field; NULL: all
     int type;
     const char *expected;
 } PARTS[] = {
     { "min", "number", LUA_TNUMBER, "finite number" }, { "max", "number", LUA_TNUMBER, "finite number" },
     { "whole", "number", LUA_TBOOLEAN, "boolean" },    { "drag", "point", LUA_TBOOLEAN, "boolean" },
-    { "unit", "number", LUA_TSTRING, "string" },       { "label", NULL, LUA_TSTRING, "string" },
+    { "unit", "number or point", LUA_TSTRING, "string" },       { "label", NULL, LUA_TSTRING, "string" },
     { "doc", NULL, LUA_TSTRING, "string" },            { "choices", NULL, LUA_TTABLE, "list of values" },
     { "names", NULL, LUA_TTABLE, "table { choice = text }" },
 };
@@ -234,7 +234,7 @@ static void read_limits(lua_State *L, int from, int spec, const char *path, cons
             lua_pop(L, 1);
             continue;
         }
-        if (PARTS[i].only && strcmp(type, PARTS[i].only) != 0)
+        if (PARTS[i].only && !strstr(PARTS[i].only, type))
             glintL_error(L, "%s: a %s has no %s", full, type, PARTS[i].name);
         if (found != PARTS[i].type || (found == LUA_TNUMBER && !isfinite(lua_tonumber(L, -1))))
             glintL_refuse(L, -1, full, PARTS[i].expected);

@@ -239,9 +239,11 @@ async function recipe() {
   writeFileSync(join(work, "phong.lua"), /```lua\n([^]*?)```/.exec(text)[1])
   writeFileSync(join(work, "recipe.html"), `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">${/```html\n([^]*?)```/.exec(text)[1]}`)
   run("publish", "phong.lua", "-o", "phong.html")
+  run("phong.lua", "-o", "phong.png", "--quiet")
   const page = await open("recipe.html"), [live, embedded, frame] = [figureOf(page, 0), figureOf(page, 1), page.frameLocator("iframe").locator("glint-figure")]
   await live.scrollIntoViewIfNeeded()
   await ready(live)
+  check(await shiftOf(page) < 0.1, `recipe: layout shift ${await shiftOf(page)}`)
   check(await same(page, live, "phong.lua", "--set", "n=8"), "recipe: the element")
   check(await live.locator("math").count() === 2, "recipe: formulas")
   await live.getByLabel("n", { exact: true }).focus()

@@ -71,4 +71,75 @@ async function formulas() {
   await close(page, "formulas")
 }
 
-await runAll([still, formulas])
+writeFileSync(join(work, "order.lua"), `local glint = require "glint"
+-- alpha = of the comment
+local P = glint.params {
+  n = { 5, min = 1, max = 50 }, ["ks"] = { 0.5, min = 0, max = 1 }, -- mode = a comment
+  angle = { 30, min = 0, max = 90 }, N = { 2, min = 1, max = 9, whole = true }, alpha = true,
+  lamp = { { 1, 2, 3 }, drag = true, unit = "m" }, mode = { "a", choices = { "a", "b" } },
+}
+return glint.animation { frames = 1, width = 320, height = 200, samples = 16, scene = glint.scene { camera = glint.camera { eye = { 0, 0, 7 }, at = { 0, 0, 0 } },
+  glint.sphere_light { position = P.lamp, radius = 0.5, samples = 4 }, glint.sphere { center = { 0, 0, 0 }, radius = P.N / 2, material = glint.material { shininess = P.n } } } }`)
+
+// Controls stand in the script's order; n and N have values of their own; a double click on a handle returns to the default.
+async function controls() {
+  publish("order.lua", "order.html")
+  for (const address of ["order.html", "order-src.html"]) {
+    if (address === "order-src.html") write(address, `<glint-figure src="order.lua" width="320"></glint-figure>`)
+    const page = await open(address), figure = figureOf(page)
+    const names = () => figure.locator(".name").allInnerTexts().then(all => all.join())
+    if (address === "order.html") {
+      await figure.locator(".control").first().waitFor({ state: "visible" })
+      check(await names() === "n,ks,angle,N,alpha,lamp,mode", `controls, ${address}: before the engine: ${await names()}`)
+    }
+    await ready(figure)
+    check(await names() === "n,ks,angle,N,alpha,lamp,mode", `controls, ${address}: ${await names()}`)
+    if (address === "order-src.html") {
+      check(await figure.locator(".control").filter({ hasText: "lamp" }).locator(".value").innerText() === "m", "controls: the unit of a point")
+      await figure.getByLabel("N", { exact: true }).focus()
+      await page.keyboard.press("End")
+      const values = () => figure.evaluate(one => JSON.stringify(one.values))
+      check(await values() === '{"N":9}' && await figure.getAttribute("n") === null, `controls: N: ${await values()} ${await figure.getAttribute("n")}`)
+      await figure.evaluate(one => one.setAttribute("n", 7))
+      check(await values() === '{"N":9,"n":7}', `controls: n: ${await values()}`)
+      await figure.getByLabel("lamp x").fill("2")
+      await settled(figure)
+      await figure.locator(".handle").dblclick()
+      check(JSON.parse(await values()).lamp.join() === "1,2,3" && await figure.getByLabel("lamp x").inputValue() === "1", `controls: a double click on a handle: ${await values()}`)
+    }
+    await close(page, `controls, ${address}`)
+  }
+}
+
+// Links with wrong values, sizes in per cent, scripts that never end and scripts with faults.
+async function messages() {
+  write("link.html", `<div style="width: 500px"><glint-figure src="order.lua" width="50%"></glint-figure></div>`)
+  const page = await open("link.html#n=7&lamp=a,b,c&N=100&mode=c"), figure = figureOf(page)
+  await ready(figure)
+  await settled(figure)
+  const box = await figure.locator("canvas").boundingBox()
+  check(Math.abs(box.width - 250) < 1 && Math.abs(box.height - 250 * 200 / 320) < 1, `messages: half of 500 pixels: ${box.width} x ${box.height}`)
+  const text = await figure.locator(".error").innerText()
+  check(text === "The link has N = 100; expected a whole number from 1 to 9\nThe link has lamp = a,b,c; expected three numbers X,Y,Z\nThe link has mode = c; expected one of a, b", `messages: ${text}`)
+  check(JSON.stringify(await figure.evaluate(one => one.values)) === '{"n":7}' && await figure.getByLabel("mode").inputValue() === "a", "messages: the other values hold")
+  check(await figure.locator(".timing").innerText() === "", "messages: a finished picture has no line")
+  await figure.getByRole("button", { name: "Reset" }).click()
+  await settled(figure)
+  check(await figure.locator(".error").isHidden(), "messages: Reset")
+  await close(page, "messages")
+
+  writeFileSync(join(work, "endless.lua"), "while true do end")
+  writeFileSync(join(work, "fault.lua"), "error 'no such ball'")
+  write("faults.html", `<glint-figure src="endless.lua" width="320"></glint-figure><glint-figure src="fault.lua" width="320" height="200"></glint-figure>`)
+  const since = Date.now(), wrong = await open("faults.html"), [endless, fault] = [figureOf(wrong, 0), figureOf(wrong, 1)]
+  await fault.locator(".error").waitFor({ state: "visible" })
+  check((await fault.boundingBox()).height < 150, `messages: a failed figure keeps ${(await fault.boundingBox()).height} pixels`)
+  await wrong.waitForTimeout(1500)
+  check(await endless.locator(".wait").evaluate(one => one.checkVisibility() && one.getBoundingClientRect().height > 2 && one.getAnimations().length > 0), "messages: a line while a script runs")
+  await endless.locator(".error").waitFor({ state: "visible" })
+  check((await endless.locator(".error").innerText()).includes("the script took longer than 10") && Date.now() - since < 20000, `messages: endless: ${await endless.locator(".error").innerText()}`)
+  check(await endless.locator(".wait").isHidden(), "messages: no line after a message")
+  await close(wrong, "faults")
+}
+
+await runAll([still, formulas, controls, messages])

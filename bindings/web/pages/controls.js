@@ -48,6 +48,27 @@ export function parsed(param, text) {
   return param.type === "number" && Number.isFinite(numbers[0]) && numbers.length === 1 ? numbers[0] : text
 }
 
+// Returns what is wrong about a value that a text spelled, for the reader; undefined: nothing.
+export function fault({ name, type, choices, min = -Infinity, max = Infinity, whole }, value) {
+  const range = `${Number.isFinite(min) ? ` from ${written(min)}` : ""}${Number.isFinite(max) ? ` ${Number.isFinite(min) ? "to" : "up to"} ${written(max)}` : ""}`
+  const [holds, expected] = choices ? [choices.includes(value), `one of ${choices.join(", ")}`]
+    : type === "number" ? [typeof value === "number" && value >= min && value <= max && !(whole && value % 1), `a ${whole ? "whole " : ""}number${range}`]
+    : type === "boolean" ? [typeof value === "boolean", "true or false"]
+    : type === "point" ? [Array.isArray(value), "three numbers X,Y,Z"] : [true]
+  return holds ? undefined : `${name} = ${spelled(value)}; expected ${expected}`
+}
+
+// Returns the parameters in the order in which the script first names them. The engine has them by the alphabet.
+export function ordered(params, script = "") {
+  const text = script.slice(Math.max(0, script.indexOf("params"))).replace(/--\[\[[^]*?\]\]|--.*/g, "")
+  const placeOf = ({ name }) => {
+    const at = text.search(new RegExp(`(?<![\\w.])${name.replace(/[^\w]/g, "\\$&")}["']?\\]?\\s*=(?!=)`))
+    return at < 0 ? Infinity : at
+  }
+  const places = new Map(params.map(param => [param, placeOf(param)]))
+  return [...params].sort((a, b) => places.get(a) - places.get(b) || 0)
+}
+
 // Makes the control of one parameter. It calls `changed(value, moving)` for each new value. A double click returns to
 // `param.start`, or to the default.
 export function control(param, changed) {

@@ -35,10 +35,10 @@ export function viewOf(text) {
 }
 
 export class Gestures {
-  // layer: an element over the picture. turned(view, moving) and moved(name, point, moving) are called for each change;
-  // pointOf(name) returns a point.
-  constructor(layer, { turned, moved, pointOf }) {
-    Object.assign(this, { layer, turned, moved, pointOf })
+  // layer: an element over the picture. turned(view, moving) and moved(name, point, moving) are called for each change,
+  // resets(name) for a point that returns to its default; pointOf(name) returns a point.
+  constructor(layer, { turned, moved, pointOf, resets }) {
+    Object.assign(this, { layer, turned, moved, pointOf, resets })
     this.view = { ...STILL }
     this.pointers = new Map()
     this.handles = new Map()
@@ -50,7 +50,7 @@ export class Gestures {
     on("contextmenu", event => this.mayTurn && event.preventDefault()) // the right button shifts the view
     on("keydown", this.key)
     on("wheel", this.wheel, { passive: false })
-    on("dblclick", event => event.target === layer && this.mayTurn && this.turn({ ...STILL }, false))
+    on("dblclick", event => event.target.dataset?.name ? this.resets(event.target.dataset.name) : this.mayTurn && this.turn({ ...STILL }, false))
     on("touchstart", event => event.touches.length > 1 && this.mayTurn && event.cancelable && event.preventDefault(), { passive: false })
   }
 

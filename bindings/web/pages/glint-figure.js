@@ -10,18 +10,20 @@
 //              inside the element, which may have a name. With both, the text inside is used
 //   files      addresses of the files that the script reads, separated by commas; the script uses the last part of each
 //   controls   names of the script's parameters with a control, separated by commas; default: all parameters
-//   width, height   size of the picture, in CSS pixels, as of an img; a narrower page makes it smaller. Default: the script's
+//   width, height   size of the picture, in CSS pixels, as of an img; width also in per cent. A narrower page makes the picture
+//              smaller. Default: the script's size
 //   frame      first frame shown, from 1
-//   timing     shows how long the last full picture took
+//   timing     shows the samples of the last picture, its estimated error, and how long it took
 //   NAME       value of the parameter NAME; set-NAME if the name is one of these attributes or one of HTML. The element
-//              writes the reader's values into these attributes
+//              writes the reader's values into these attributes. Attributes have no capitals: of the parameters n and N, only
+//              n has one
 // A full picture of several samples appears in steps, with 1, 2, 4 ... samples and their estimated errors.
 // A page may set `figure.given = { name, text, files, values, params }` instead of src and files. The picture inside the
 // element is shown until the first frame is rendered, and without JavaScript. `figure.values` has the changed values;
 // `figure.set({ n: 32 })` changes some. Each change by the reader sends the event "value" with the `detail`
 // { name, value, moving }. Each finished picture sends "glint-render" with { image, coarse, ms }, and again when image.error is
 // known. coarse: a better picture follows. An error sends "glint-error" with { error }.
-import { control, controlStyle, parsed, spelled } from "./controls.js"
+import { control, controlStyle, fault, ordered, parsed, spelled } from "./controls.js"
 import { Gestures, gestureStyle, orbitOf, STILL, viewOf } from "./gestures.js"
 import { copyLink, readLink } from "./link.js"
 import { Player } from "./player.js"
@@ -54,7 +56,8 @@ const style = `
     background: #8b1a1a; color: #fff; }
   form { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(15rem, 100%), 1fr)); gap: 0.75rem 1.5rem; margin: 0.6rem 0; }
   form.waits { visibility: hidden; }
-  .timing { flex: 1 1 12rem; contain: inline-size; font-size: 0.875rem; min-height: 1lh; }
+  .timing { flex: 1 1 6rem; contain: inline-size; font-size: 0.875rem; min-height: 1lh; }
+  :host([timing]) .timing { flex-basis: 12rem; }
   .note { font-variant-numeric: tabular-nums; color: color-mix(in srgb, currentColor 75%, transparent); }
   .bar { display: flex; flex-wrap: wrap; gap: 0.5rem 0.75rem; align-items: center; margin: 0.5rem 0; }
   .bar input { flex: 1 1 8rem; min-width: 0; }
@@ -62,7 +65,7 @@ const style = `
   button { font: inherit; padding: 0.25rem 0.8rem; min-height: 2rem; }
   @media (pointer: coarse), (max-width: 30rem) {
     .bar button, .bar input { min-height: 2.75rem; min-width: 2.75rem; }
-    .timing { min-height: 2lh; }
+    :host([timing]) .timing { min-height: 2lh; }
   }
 ${controlStyle}${gestureStyle}`
 
@@ -92,6 +95,11 @@ export class GlintFigure extends HTMLElement {
         this.change(name, value, moving)
       },
       pointOf: name => [this.values[name] ?? this.job.params.find(param => param.name === name).value].flat(),
+      resets: name => {
+        const value = this.starts[name] ?? this.job.params.find(param => param.name === name).value
+        this.controls.find(one => one.param.name === name)?.made.set(value)
+        this.change(name, value, false)
+      },
     })
   }
 
@@ -141,6 +149,7 @@ export class GlintFigure extends HTMLElement {
 
   async start() {
     const mine = this.starting = {}
+    wait(this.part$(".wait"), Infinity)
     try {
       const [glint, source] = await Promise.all([engineOfPage(), sourceOf(this)])
       this.source = source
@@ -174,10 +183,11 @@ export class GlintFigure extends HTMLElement {
     const inside = this.querySelector("img")
     const { width, height } = this.job ?? { width: Number(inside?.getAttribute("width")), height: Number(inside?.getAttribute("height")) }
     if (!this.job && !(width && height)) return
-    const [wide, high] = ["width", "height"].map(name => parseFloat(this.getAttribute(name)?.endsWith("%") ? "" : this.getAttribute(name)) || 0)
+    const share = /^\s*[\d.]+%/.exec(this.getAttribute("width"))?.[0] // of the space that there is
+    const [wide, high] = ["width", "height"].map(name => parseFloat(name === "width" && share ? "" : this.getAttribute(name)) || 0)
     this.wide = wide || (high ? high * width / height : width)
     this.ratio = wide && high ? wide / high : width / height
-    this.part$("figure").style.maxWidth = `${this.wide}px`
+    Object.assign(this.part$("figure").style, share ? { width: share, maxWidth: "100%" } : { width: "", maxWidth: `${this.wide}px` })
     this.part$(".picture").style.aspectRatio = this.ratio
   }
 
@@ -190,7 +200,8 @@ export class GlintFigure extends HTMLElement {
   // ---- Parameters ----
 
   makeControls(params) {
-    const wanted = this.hasAttribute("controls") ? listed(this.getAttribute("controls")) : params.map(param => param.name)
+    const text = this.source?.text ?? this.given?.text ?? this.querySelector('script[type="text/x-lua"]')?.textContent
+    const wanted = this.hasAttribute("controls") ? listed(this.getAttribute("controls")) : ordered(params, text).map(param => param.name)
     const found = wanted.map(name => {
       const param = params.find(one => one.name === name)
       if (!param) throw new Error(`glint-figure: controls: the script has no parameter "${name}"`)
@@ -218,6 +229,7 @@ export class GlintFigure extends HTMLElement {
 
   // Called for each value that the reader chooses.
   change(name, value, moving) {
+    this.fault = ""
     this.values = { ...this.values, [name]: value }
     this.reflect(name, value)
     this.dispatchEvent(new CustomEvent("value", { detail: { name, value, moving }, bubbles: true, composed: true }))
@@ -235,6 +247,7 @@ export class GlintFigure extends HTMLElement {
   }
 
   reset() {
+    this.fault = ""
     this.values = { ...this.starts }
     for (const { param, made } of this.controls) made.set(param.start)
     for (const param of this.job?.params ?? []) this.reflect(param.name, this.starts?.[param.name])
@@ -244,12 +257,18 @@ export class GlintFigure extends HTMLElement {
 
   // ---- Attributes ----
 
-  attributeOf(name) { return /^on/i.test(name) || OWN.includes(name.toLowerCase()) ? `set-${name}` : name }
+  // Returns the attribute of a parameter; undefined if another parameter, whose name differs by capitals only, has it.
+  attributeOf(name) {
+    const isTaken = name !== name.toLowerCase() && this.job?.params.some(param => param.name !== name && param.name.toLowerCase() === name.toLowerCase())
+    if (isTaken) return undefined
+    return /^on/i.test(name) || OWN.includes(name.toLowerCase()) ? `set-${name}` : name
+  }
 
   // Writes a value into its attribute; undefined removes it.
   reflect(name, value) {
     this.noticed(this.observer?.takeRecords() ?? [])
     const attribute = this.attributeOf(name)
+    if (attribute === undefined) return
     try {
       if (value === undefined) this.removeAttribute(attribute)
       else this.setAttribute(attribute, spelled(value))
@@ -261,7 +280,7 @@ export class GlintFigure extends HTMLElement {
   takeAttributes() {
     this.starts = {}
     for (const param of this.job.params) {
-      const text = this.getAttribute(this.attributeOf(param.name))
+      const attribute = this.attributeOf(param.name), text = attribute === undefined ? null : this.getAttribute(attribute)
       if (text !== null && !(param.name in this.values)) this.starts[param.name] = parsed(param, text)
     }
     for (const { param, made } of this.controls) {
@@ -280,7 +299,7 @@ export class GlintFigure extends HTMLElement {
     if (names.has("frame")) this.frame = Math.min(Number(this.getAttribute("frame")) || 1, this.job.frames)
     for (const param of this.job.params) {
       const attribute = this.attributeOf(param.name)
-      if (!names.has(attribute.toLowerCase())) continue
+      if (!attribute || !names.has(attribute.toLowerCase())) continue
       const text = this.getAttribute(attribute)
       const { [param.name]: _, ...others } = this.values
       const value = text === null ? param.value : parsed(param, text)
@@ -299,10 +318,13 @@ export class GlintFigure extends HTMLElement {
   // Takes what the page's address says about this figure.
   takeLink() {
     const { values, frame, orbit } = readLink(this, this.job.params)
+    const faults = this.job.params.filter(param => param.name in values).map(param => [param.name, fault(param, values[param.name])]).filter(([, text]) => text)
+    for (const [name] of faults) delete values[name]
+    this.fault = faults.map(([, text]) => `The link has ${text}`).join("\n")
     if (frame) this.goTo(Math.min(Math.max(1, Math.round(frame)), this.job.frames), null)
     if (orbit) this.hands.view = viewOf(orbit)
     if (Object.keys(values).length > 0) this.set(values)
-    else if (frame || orbit) this.ask(false)
+    else if (frame || orbit || this.fault) this.ask(false)
   }
 
   // ---- Frames ----
@@ -351,7 +373,8 @@ export class GlintFigure extends HTMLElement {
     canvas.hidden = false
     this.part$("slot").hidden = true
     this.part$("slot").style.display = "none"
-    this.part$(".error").hidden = true
+    this.part$(".picture").hidden = false
+    this.showFault(this.fault)
     this.part$(".hands").hidden = false
     this.hands.update(image, name => {
       const param = this.job.params.find(one => one.name === name)
@@ -364,20 +387,26 @@ export class GlintFigure extends HTMLElement {
 
   showNote(image, coarse, ms) {
     const note = this.part$(".timing")
-    const parts = [quality(image)]
-    if (this.hasAttribute("timing") && !coarse) parts.push(`${Math.max(1, Math.round(ms))} ms`)
+    const hasTiming = this.hasAttribute("timing"), { samples, ownSamples } = image
+    const parts = [hasTiming ? quality(image) : samples < ownSamples ? `${samples} of ${ownSamples} samples` : ""]
+    if (hasTiming && !coarse) parts.push(`${Math.max(1, Math.round(ms))} ms`)
     const text = parts.filter(Boolean).join(", ")
     note.ariaBusy = String(coarse)
     note.style.visibility = text ? "" : "hidden" // a coarse picture leaves the text's space free
-    if (text) note.textContent = text
+    if (text || !hasTiming) note.textContent = text
     this.showFoot()
   }
 
+  showFault(text) {
+    this.part$(".error").textContent = text ?? ""
+    this.part$(".error").hidden = !text
+  }
+
   failed(error) {
-    const box = this.part$(".error")
     const line = error.line && error.file === this.source?.name ? this.source.text.split("\n")[error.line - 1] : undefined
-    box.textContent = error.message + (line?.trim() ? `\n\n${error.line} | ${line}` : "")
-    box.hidden = false
+    wait(this.part$(".wait"), 0)
+    this.part$(".picture").hidden = this.part$("canvas").hidden && !this.querySelector("img")
+    this.showFault(error.message + (line?.trim() ? `\n\n${error.line} | ${line}` : ""))
     if (this.player?.playing) this.part$(".play").click()
     this.dispatchEvent(new CustomEvent("glint-error", { detail: { error } }))
   }

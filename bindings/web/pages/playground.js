@@ -6,7 +6,7 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/
 import { lua } from "@codemirror/legacy-modes/mode/lua"
 import { setDiagnostics } from "@codemirror/lint"
 import { tags } from "@lezer/highlight"
-import { control, controlStyle } from "./controls.js"
+import { control, controlStyle, ordered } from "./controls.js"
 import { Gestures, gestureStyle, orbitOf, STILL } from "./gestures.js"
 import { loadWithFont, quality, Renderer, show, wait } from "./renderer.js"
 
@@ -112,6 +112,7 @@ const hands = new Gestures(get("hands"), {
     ask(moving)
   },
   pointOf: name => values[name] ?? job.params.find(param => param.name === name).value,
+  resets(name) { hands.moved(name, job.params.find(param => param.name === name).value, false) },
 })
 
 function ask(coarse) {
@@ -139,7 +140,7 @@ function showControls() {
   const now = JSON.stringify(job.params)
   if (now !== shape) {
     shape = now
-    controls = job.params.map(param => ({ param, made: control(param, (value, moving) => {
+    controls = ordered(job.params, script()).map(param => ({ param, made: control(param, (value, moving) => {
       values = { ...values, [param.name]: value }
       ask(moving)
     }) }))

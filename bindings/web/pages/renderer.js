@@ -45,12 +45,13 @@ export function show(canvas, over, image) {
   over.shown = image.marks
 }
 
-// Shows in a line how much of a time has passed. ms: the expected time; a short one is not shown.
+// Shows in a line how much of a time has passed. ms: the expected time; a short one is not shown. Infinity: it is unknown, and
+// the line appears when it is no longer short.
 export function wait(line, ms) {
   line.hidden = ms < WAIT_MS
-  if (line.hidden) return
   line.getAnimations().forEach(one => one.cancel())
-  line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
+  if (ms === Infinity) line.animate([{ transform: "scaleX(0)" }, { transform: "none" }], { duration: 1000, delay: WAIT_MS, fill: "backwards", iterations: Infinity, direction: "alternate" })
+  else if (!line.hidden) line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
 }
 
 // Returns the lower quartile, since other work of the machine slows some pictures down; of a few the median.
