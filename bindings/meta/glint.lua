@@ -807,7 +807,7 @@ function glint.scene(fields) end
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
 ---| "alpha"  # the share of the samples that hit something, minus the share of the background that is visible through glass and translucent surfaces; one number, 0 .. 1
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
----| "albedo"  # diffuse reflectance, including patterns, plus mirror and transmission at normal incidence; 0 where nothing is hit
+---| "albedo"  # diffuse reflectance, including patterns, of the first surface that is not a smooth mirror or smooth glass; rough surfaces add what they reflect and transmit; 0 where nothing is hit
 ---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers. "light:NAME": the light of the lamps
 --- of that group or name; "light:ambient": the light that comes from no lamp; "light:*": all of these
 ---| "outline"  # 1 on outlines and edges of objects, else 0; one number, at the pixel's centre

@@ -306,5 +306,49 @@ function tests.albedo_for_denoisers()
   end
 end
 
+-- The pass albedo shows what smooth mirrors and smooth glass show: the blend of the albedos of their rays, 1 for the surroundings.
+function tests.albedo_through_mirrors_and_glass()
+  local red, silver = { 0.8, 0.2, 0.1 }, { 0.9, 0.8, 0.7 }
+  local function matt(diffuse) return glint.material { diffuse = diffuse } end
+  local function shows(what, want, objects, options)
+    local fields = { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, fov = 20 }, background = { 3, 0, 0 }, table.unpack(objects) }
+    local all = { width = 3, height = 3, output = "none", passes = "albedo,normal" }
+    for name, value in pairs(options or {}) do all[name] = value end
+    local image = glint.scene(fields):render(all)
+    for c = 1, 3 do near(select(c, image:pixel(1, 1, "albedo")), want[c], 1e-5, ("%s: channel %d"):format(what, c)) end
+    near(select(3, image:pixel(1, 1, "normal")), 1, 1e-6, what .. ": the normal is the first surface's")
+  end
+  local function times(a, b) return { a[1] * b[1], a[2] * b[2], a[3] * b[3] } end
+  local function wall(z, material) return glint.box { min = { -50, -50, z - 1 }, max = { 50, 50, z }, material = material } end
+  local behind = glint.sphere { center = { 0, 0, 12 }, radius = 2, material = matt(red) } -- of the camera
+  local mirror = glint.material { diffuse = 0, mirror = silver }
+  local stripes = glint.pattern(function(p) return glint.select(glint.less(p.z, 5), 1, red) end)
+  shows("a mirror that shows a ball", times(silver, red), { wall(0, mirror), behind })
+  shows("with several samples", times(silver, red), { wall(0, mirror), behind }, { samples = 5 })
+  shows("in float", times(silver, red), { wall(0, mirror), behind }, { precision = "float" })
+  shows("adaptive", times(silver, red), { wall(0, mirror), behind }, { samples = 4, adaptive = 0.1 })
+  shows("a mirror that shows a ball with a pattern", times(silver, red),
+    { wall(0, mirror), glint.sphere { center = { 0, 0, 12 }, radius = 2, material = glint.material { diffuse = stripes } } })
+  shows("a mirror that shows the background", silver, { wall(0, mirror) })
+  shows("no rays", silver, { wall(0, mirror), behind }, { max_depth = 0 })
+  shows("two mirrors that show a ball", times(silver, times(silver, silver)),
+    { wall(0, mirror), glint.box { min = { -50, -50, 12 }, max = { 50, 50, 13 }, material = mirror } }, { max_depth = 2 })
+  shows("a mirror that shows rough metal", times(silver, { 1, 0.77, 0.34 }), { wall(0, mirror), glint.sphere { center = { 0, 0, 12 }, radius = 2,
+    material = glint.material { model = "cook_torrance", diffuse = 0, specular = 1, f0 = { 1, 0.77, 0.34 }, roughness = 0.3 } } })
+  shows("a matt surface that mirrors", { 0.3 + 0.5 * 0.8, 0.3 + 0.5 * 0.2, 0.3 + 0.5 * 0.1 },
+    { wall(0, glint.material { diffuse = 0.3, mirror = 0.5 }), behind })
+  shows("a translucent mirror", times(silver, red), { wall(0, glint.material { diffuse = 0, mirror = silver, opacity = 0.5 }), behind })
+  shows("at most 1", { 1, 1, 1 }, { wall(0, glint.material { diffuse = 0.9, mirror = 1 }), behind })
+  local r, t, through = 0.04, 0.96, {}
+  local glass = { diffuse = 0, mirror = 1, transmission = 1, ior = 1.5, fresnel = true }
+  for c = 1, 3 do through[c] = r + t * t * (red[c] + r) / (1 - r * r) end
+  local globe = glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material(glass) }
+  shows("a glass ball before a wall", through, { globe, wall(-3, matt(red)) })
+  glass.mirror, glass.fresnel, glass.transmission, glass.absorption = nil, false, 0.9, { 0.1, 0.2, 0.3 }
+  for c = 1, 3 do through[c] = 0.81 * math.exp(-2 * glass.absorption[c]) * red[c] end
+  shows("tinted glass before a wall", through,
+    { glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material(glass) }, wall(-3, matt(red)) })
+end
+
 tally.run(tests)
 tally.finish()

@@ -297,6 +297,12 @@ void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, const 
         vertex->step[GLINT_AT_REST](&batch->tile, frame, &walk);
 }
 
+void glint_batch_find_patterns(glint_batch *batch, const glint_tile_frame *frame)
+{
+    if (frame->plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(&batch->tile, frame->plan) & GLINT_FIELDS_PLANES)
+        glint_tile_find_patterns(&batch->tile, frame);
+}
+
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any)
 {
     glint_tile *tile = &batch->tile;
@@ -308,8 +314,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
             memset(tile->film.sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->film.sum[k][c]);
     if (any)
         glint_tile_step(tile, frame, GLINT_AT_LIT, &walk);
-    if (plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(tile, plan) & GLINT_FIELDS_PLANES)
-        glint_tile_find_patterns(tile, frame);
+    glint_batch_find_patterns(batch, frame);
     do {
         const uint32_t count = lights - walk.from < GLINT_LIGHT_CHUNK ? lights - walk.from : GLINT_LIGHT_CHUNK;
         for (uint32_t i = 0; i < count;)

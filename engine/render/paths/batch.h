@@ -47,6 +47,8 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame);
 /// After the cast: finds the rays that hit nothing.
 void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TILE_GROUPS]);
+/// Runs the programs of the materials that the rays hit.
+void glint_batch_find_patterns(glint_batch *batch, const glint_tile_frame *frame);
 /// Computes the sums of the batch's tile: the light that surfaces, and in a whole batch the background, send back
 /// along the rays. lights: the frame, or one with other lights; the light of faces and vertices is cached for all readers,
 /// so it is the frame's.

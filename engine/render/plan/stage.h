@@ -61,6 +61,7 @@ typedef enum glint_stage_time {
     GLINT_AT_CAST, ///< the nearest objects are known: for the tile's own rays, or for secondary rays
     GLINT_AT_SURFACE, ///< points and normals are known: for the tile's own rays, or for secondary rays
     GLINT_AT_HITS, ///< the nearest objects are known for a sample of the primary rays
+    GLINT_AT_ALBEDO, ///< the reflectances of the surfaces that the eye sees are known; with the pass albedo
     GLINT_AT_SIGHT, ///< visible lights are known, too; hits no longer change
     GLINT_AT_LIT, ///< before the lights, if some point of the sample is shaded
     GLINT_AT_LIGHT, ///< after each light or, for an area light, after its samples

@@ -179,30 +179,43 @@ static void add_bounces(const glint_bounce_material *m, double color[3])
     }
 }
 
-/// Stores reflectances. Reflectances of translucent materials are divided by the opacity again; at an opacity of 0 they
-/// are 0.
-static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
+double glint_tile_albedo(const glint_tile *tile, const glint_plan *plan, uint32_t i, bool followed, double color[3])
 {
-    const glint_plan *plan = frame->plan;
+    glint_bounce_material buffer;
+    double own[3];
+    vec_copy(color, glint_tile_diffuse(tile, plan, i, own));
+    if (!plan->bouncing)
+        return 1;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, plan, i, &buffer);
+    const double opacity = plan->clears ? 1 - m->clear : 1;
+    if (!followed)
+        add_bounces(m, color);
+    for (int c = 0; c < 3; c++)
+        color[c] = opacity > 0 ? color[c] / opacity : 0;
+    return opacity;
+}
+
+/// Stores the albedo of the first surfaces that are neither smooth mirrors nor smooth glass, and 1 where such surfaces
+/// show the surroundings.
+static void store_albedo(glint_tile *tile, const glint_tile_frame *frame)
+{
+    double light[3][GLINT_TILE_SAMPLES], color[3] = { 0 };
     float albedo[3][GLINT_TILE_SAMPLES];
-    double buffer[3], color[3] = { 0 };
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        double opacity = glint_has_lane(tile->at.hits, i) ? 1 : 0;
-        if (opacity > 0)
-            vec_copy(color, glint_tile_diffuse(tile, plan, i, buffer));
-        if (opacity > 0 && plan->bouncing) {
-            glint_bounce_material own;
-            const glint_bounce_material *m = glint_tile_bouncing(tile, plan, i, &own);
-            opacity = plan->clears ? 1 - m->clear : 1;
-            add_bounces(m, color);
-        }
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        if (hit)
+            glint_tile_albedo(tile, frame->plan, i, false, color);
         for (int c = 0; c < 3; c++)
-            albedo[c][i] = opacity > 0 ? (float)(color[c] / opacity) : 0;
+            light[c][i] = hit ? color[c] : 0;
     }
+    glint_tile_step(tile, frame, GLINT_AT_ALBEDO, &(glint_sample_walk) { .albedo = light });
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+            albedo[c][i] = (float)light[c][i];
     glint_tile_store_pass(tile, frame, GLINT_PASS_ALBEDO, albedo[0]);
 }
 
-void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_store_geometry(glint_tile *tile, const glint_tile_frame *frame)
 {
     const uint32_t passes = frame->plan->desc.passes;
     if (passes >> GLINT_PASS_DEPTH & 1)

@@ -231,6 +231,7 @@ typedef struct glint_sample_walk {
         ///< GLINT_AT_LIGHT, `count` is the number of rows from `slot` on, in that chunk
     uint32_t slot;
     struct glint_batch *batch; ///< the secondary rays, at GLINT_AT_MISSED and GLINT_AT_SENT
+    double (*albedo)[GLINT_TILE_SAMPLES]; ///< channels of the pass albedo, at GLINT_AT_ALBEDO
 } glint_sample_walk;
 
 /// Compute the rays of the sample, and the surfaces, unless the walk has them.
@@ -553,7 +554,10 @@ bool glint_tile_wants_geometry(const glint_plan *plan);
 double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i);
 /// Returns the distance at which ray i hits something or sees a light; infinite if it does neither.
 double glint_tile_hit_distance(const glint_tile *tile, const glint_plan *plan, uint32_t i);
-void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_store_geometry(glint_tile *tile, const glint_tile_frame *frame);
+/// Fills the albedo of the hit of sample i. followed: without what a smooth mirror or smooth glass sends on. Reflectances
+/// of translucent materials are divided by the opacity again; at an opacity of 0 they are 0. Returns the opacity.
+double glint_tile_albedo(const glint_tile *tile, const glint_plan *plan, uint32_t i, bool followed, double color[3]);
 bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);

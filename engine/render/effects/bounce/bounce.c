@@ -33,6 +33,7 @@ struct glint_bounce {
     glint_rays *levels[LEVELS]; ///< rays of each level; taking some swaps the buffers
     uint32_t counts[LEVELS];
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
+    double (*albedo)[GLINT_TILE_SAMPLES]; ///< where the albedo along the rays is added; NULL: their light is
     glint_ray_slope *slopes; ///< slopes of the rays of all levels and of the batch's own rays; NULL until a frame has
         ///< derivatives
 };
@@ -218,6 +219,16 @@ static void push_all(struct glint_bounce *bounce, const glint_tile *tile, const 
     }
 }
 
+/// Leaves out the ray that goes straight on, and divides the weights of the others by the opacity. For albedos.
+static void scale_by_opacity(const glint_tile *tile, const glint_plan *plan, uint32_t i, double weight[GLINT_SPLITS][3])
+{
+    double color[3];
+    const double opacity = glint_tile_albedo(tile, plan, i, true, color);
+    for (int event = 0; event < GLINT_SPLITS; event++)
+        for (int c = 0; c < 3; c++)
+            weight[event][c] = event != GLINT_EVENT_STRAIGHT && opacity > 0 ? weight[event][c] / opacity : 0;
+}
+
 /// Sends on the rays of sample i.
 static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                     uint32_t base)
@@ -237,6 +248,8 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
     // only the straight ray is left, or effects/rough follows the others
     if (!(depth < plan->desc.max_depth) || plan->bouncing[tile->surface.material[i]].rough)
         memset(rays.weight, 0, GLINT_EVENT_STRAIGHT * sizeof *rays.weight);
+    if (bounce->albedo)
+        scale_by_opacity(tile, plan, i, rays.weight);
     if (!first && glint_has_lane(batch->total, i)) // the mirrored and the totally reflected ray have the same direction
         take_weight(plan, &rays, GLINT_EVENT_MIRROR, GLINT_EVENT_REFRACT);
     if (!first && surfaces > GLINT_BOUNCE_SPLITS)
@@ -328,8 +341,45 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
         }
 }
 
+/// Returns whether sample i is a smooth mirror or smooth glass that sends on rays.
+static bool is_followed(const struct glint_bounce *bounce, const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    return glint_is_sharp(&plan->bouncing[tile->surface.material[i]]) && depth_at(bounce, tile, i) < plan->desc.max_depth;
+}
+
+/// Adds the albedo along the rays to their pixels, in order. The surroundings have the albedo 1.
+static void collect_albedo(struct glint_bounce *bounce, const glint_tile_frame *frame)
+{
+    const glint_batch *batch = &bounce->batch;
+    const glint_rays *rays = batch->rays;
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        for (unsigned bits = rays->active[g]; bits; bits &= bits - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(bits), at = batch->sample[i];
+            double color[3] = { 1, 1, 1 };
+            if (glint_batch_has_sample(batch, i) && glint_has_lane(batch->tile.at.hits, at))
+                glint_tile_albedo(&batch->tile, frame->plan, at, is_followed(bounce, &batch->tile, frame->plan, at), color);
+            for (int c = 0; c < 3; c++)
+                bounce->albedo[c][rays->pixel[i]] += rays->throughput[c][i] * color[c];
+        }
+}
+
+static void run_albedo_batch(struct glint_bounce *bounce, const glint_tile_frame *frame, uint32_t level)
+{
+    take_level(bounce, level, &bounce->batch.tile.counts);
+    const bool any = glint_batch_cast(&bounce->batch, frame);
+    if (any)
+        glint_batch_find_patterns(&bounce->batch, frame);
+    collect_albedo(bounce, frame);
+    if (any)
+        spawn(bounce, frame, level);
+}
+
 static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_tile_frame *frame, uint32_t level)
 {
+    if (bounce->albedo) {
+        run_albedo_batch(bounce, frame, level);
+        return;
+    }
     take_level(bounce, level, &to->counts);
     const bool any = glint_batch_cast(&bounce->batch, frame);
     if (any || bounce->batch.whole)
@@ -340,9 +390,11 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
         spawn(bounce, frame, level);
 }
 
-static void follow(glint_tile *tile, const glint_tile_frame *frame)
+/// Follows the rays of a tile's samples. albedo: where their albedo is added; NULL: their light is.
+static void follow(glint_tile *tile, const glint_tile_frame *frame, double (*albedo)[GLINT_TILE_SAMPLES])
 {
     struct glint_bounce *bounce = tile->own[GLINT_STAGE_BOUNCE];
+    bounce->albedo = albedo;
     glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
     // paths start in sample order
     bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT] || frame->plan->runs[GLINT_STAGE_ROUGH];
@@ -378,8 +430,37 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     if (!walk->any || tile->direct || !glint_tile_shows(tile, frame, glint_sends_on))
         return;
     glint_tile_need_points(tile, frame, walk);
-    follow(tile, frame);
+    follow(tile, frame, NULL);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_BOUNCE, false);
+}
+
+/// Replaces the albedo of smooth mirrors and smooth glass with the albedo of what they show: the blend of the albedos of
+/// their reflected and refracted rays (Open Image Denoise 2, "Albedo"). At most 1, unless the surface itself has more.
+static void add_albedo(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
+{
+    struct glint_bounce *bounce = tile->own[GLINT_STAGE_BOUNCE];
+    glint_plan plan = *frame->plan;
+    glint_tile_frame plain = *frame;
+    double own[3], least[3][GLINT_TILE_SAMPLES];
+    if (!glint_tile_shows(tile, frame, glint_is_sharp))
+        return;
+    plain.plan = &plan;
+    plan.derivatives = NULL;
+    plan.brightest = 1;
+    glint_plan_drop(&plan, GLINT_STAGE_DERIVATIVE);
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool followed = glint_has_lane(tile->at.hits, i) && is_followed(bounce, tile, &plan, i);
+        if (followed)
+            glint_tile_albedo(tile, &plan, i, true, own);
+        for (int c = 0; c < 3; c++) {
+            least[c][i] = followed ? own[c] : walk->albedo[c][i];
+            walk->albedo[c][i] = least[c][i];
+        }
+    }
+    follow(tile, &plain, walk->albedo);
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+            walk->albedo[c][i] = fmax(least[c][i], fmin(walk->albedo[c][i], 1));
 }
 
 const glint_stage glint_stage_bounce = {
@@ -394,7 +475,7 @@ const glint_stage glint_stage_bounce = {
     .sums = true,
     .normals = true,
     .remote = true,
-    .step[GLINT_AT_REST] = add,
+    .step = { [GLINT_AT_ALBEDO] = add_albedo, [GLINT_AT_REST] = add },
     .adds = adds,
     .create = create,
     .destroy = destroy,
