@@ -371,4 +371,7 @@ end
 dofile "tests/lua/everywhere.lua"(tally, script, 3, 3)
 os.remove(script)
 
+local sparse = glint.scene { indirect = { samples = 3 } }.indirect
+check(sparse.samples == 3 and sparse.bounces == 2, "fields that a table lacks: %g %g", sparse.samples, sparse.bounces)
+
 tally.finish()
