@@ -169,7 +169,7 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(if $(WASM),,$(LINK_NEEDED
 ENGINE_SRC   := $(sort $(shell find engine -name "*.c"))
 # The module for browsers has its own entry points, and only some files of the command.
 WEB_SRC      := $(filter-out bindings/run/film_pipe.c,$(wildcard $(addsuffix /*.c,$(addprefix bindings/,lua pattern run value web)))) \
-                  $(addprefix bindings/command/,$(addsuffix .c,describe events explain json output progress script signals untrusted_lua))
+                  $(addprefix bindings/command/,$(addsuffix .c,describe events explain output progress script signals untrusted_lua))
 BINDINGS_SRC := $(sort $(if $(WASM),$(WEB_SRC),$(filter-out bindings/web/%,$(wildcard bindings/*/*.c))))
 # The instruction sets for this kind of machine. KERNELS=native compiles only the best one of this very machine,
 # KERNELS=avx2 only that one, for work on a kernel.

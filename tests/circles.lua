@@ -1,5 +1,5 @@
--- circles.lua OBJECT...: checks who calls whom in the engine, by symbols. Fails if more than 4 files call each other in
--- a circle, or if a part calls one that it must not know. The table of effects (render/effects/list.c) names all stages
+-- circles.lua OBJECT...: checks who calls whom in the engine and in the binding, by symbols. Fails if more than 4 files
+-- call each other in a circle, or if a part calls one that it must not know. The table of effects (render/effects/list.c) names all stages
 -- so that no other file needs to; its references do not count.
 local MOST <const> = 4
 
@@ -11,11 +11,29 @@ local KNOWS <const> = {
     figures = { base = true, film = true, render = "public" },
     files = { base = true, film = true, render = "public", figures = true },
     compare = { base = true, film = true, render = "public", files = true },
+    ["bindings/value"] = {},
+    ["bindings/pattern"] = { ["bindings/value"] = true },
+    ["bindings/run"] = { ["bindings/value"] = true, ["bindings/pattern"] = true, ["bindings/lua"] = true },
+    ["bindings/lua"] = { ["bindings/value"] = true, ["bindings/pattern"] = true, ["bindings/run"] = true },
 }
+-- The commands know all of the binding.
+
+-- Returns the part of a file: "render", "bindings/value".
+local function part_of(file)
+    return file:match("^bindings/[^/]+") or file:match("^[^/]+")
+end
+
+-- Returns how a part knows another one: true, "public" or nil.
+local function knows(part, other)
+    if part == other or part:find("^bindings/") and not KNOWS[part] and other:find("^bindings/") then
+        return true
+    end
+    return KNOWS[part] and KNOWS[part][other] or part:find("^bindings/") and not other:find("^bindings/") and "public"
+end
 
 local definer, wanted, files = {}, {}, {}
 for _, object in ipairs(arg) do
-    local name = object:match("engine/(.*)%.o$")
+    local name = object:match("engine/(.*)%.o$") or object:match("(bindings/.*)%.o$")
     if name and name ~= "render/effects/list" and not name:find("^render/stages/") and not name:find("/kernel[^/]*$") then
         files[#files + 1] = name
         wanted[name] = {}
@@ -30,7 +48,7 @@ for _, object in ipairs(arg) do
         end
     end
 end
-assert(#files > 0, "objects of the engine expected")
+assert(#files > 0, "objects expected")
 
 -- Returns, for each file, the files that it calls directly or indirectly.
 local function reach(from)
@@ -67,13 +85,13 @@ end
 
 local reached, bad, done, called, whole = {}, false, {}, {}, true
 for _, file in ipairs(files) do
-    local part = file:match("^[^/]+")
+    local part = part_of(file)
     for symbol in pairs(wanted[file]) do
         local other = definer[symbol]
-        local whose = other and other:match("^[^/]+")
-        local known = whose and (whose == part or KNOWS[part][whose])
+        local whose = other and part_of(other)
+        local known = whose and knows(part, whose)
         local effect, callee = file:match("^render/effects/([^/]+)/"), other and other:match("^render/effects/([^/]+)/")
-        if callee and effect ~= callee then
+        if callee and effect ~= callee and part == "render" then
             called[(effect or file) .. " " .. callee] = symbol
         end
         if whose and not (known == true or known == "public" and public[symbol]) then
@@ -121,7 +139,7 @@ for _, file in ipairs(files) do
     end
     if #circle > MOST then
         table.sort(circle)
-        print(("%d files of the engine call each other in a circle, at most %d expected:"):format(#circle, MOST))
+        print(("%d files call each other in a circle, at most %d expected:"):format(#circle, MOST))
         for _, one in ipairs(circle) do
             for symbol in pairs(wanted[one]) do
                 local other = definer[symbol]

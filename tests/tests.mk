@@ -252,9 +252,9 @@ golden-update: all ## writes the golden pictures anew, and prints which moved an
 check-layers: ## the engine names no Lua, the stages no scene
 	@tests/layers.sh
 
-check-symbols: $(KERNEL_OBJ) $(BUILD)/glint.so ## an instruction set's object defines its table and nothing else; no large circle of files
+check-symbols: $(KERNEL_OBJ) $(BUILD)/glint.so $(BINDINGS_OBJ) ## an instruction set's object defines its table and nothing else; no large circle of files
 	@tests/symbols.sh $(BUILD)/glint.so $(KERNEL_OBJ)
-	@$(LUA) tests/circles.lua $(ENGINE_OBJ)
+	@$(LUA) tests/circles.lua $(ENGINE_OBJ) $(BINDINGS_OBJ)
 
 check-headers: ## each header compiles alone
 	@CC="$(CC)" tests/headers.sh $(COMPILE) $(LUA_CFLAGS)

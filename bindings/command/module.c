@@ -56,17 +56,6 @@ static int say(lua_State *L)
     return 0;
 }
 
-int cli_read_number(lua_State *L)
-{
-    const char *text = lua_tostring(L, 1);
-    char *end = NULL;
-    const double value = text ? strtod(text, &end) : 0;
-    if (!text || end == text || *end)
-        return 0;
-    lua_pushnumber(L, value);
-    return 1;
-}
-
 static void set_functions(lua_State *L, const cli_task *task, const luaL_Reg *functions)
 {
     lua_pushlightuserdata(L, (void *)task);

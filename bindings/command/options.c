@@ -179,6 +179,16 @@ static bool read_size(cli_options *options, const cli_option *option, char *text
     return true;
 }
 
+bool cli_add_set(glintL_request *request, const char *name, const char *text)
+{
+    glintL_set *grown = realloc(request->sets, (request->set_count + 1) * sizeof *grown);
+    if (!grown)
+        return false;
+    request->sets = grown;
+    grown[request->set_count++] = (glintL_set) { .name = name, .text = text };
+    return true;
+}
+
 static bool read_set(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;

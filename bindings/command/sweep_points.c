@@ -9,6 +9,17 @@ static const unsigned char SWEEP_LUA[] = {
 #include "bindings/command/sweep.lua.h"
 };
 
+int cli_read_number(lua_State *L)
+{
+    const char *text = lua_tostring(L, 1);
+    char *end = NULL;
+    const double value = text ? strtod(text, &end) : 0;
+    if (!text || end == text || *end)
+        return 0;
+    lua_pushnumber(L, value);
+    return 1;
+}
+
 static int power(lua_State *L)
 {
     lua_pushnumber(L, glint_pow(luaL_checknumber(L, 1), luaL_checknumber(L, 2)));

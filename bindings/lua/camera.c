@@ -1,7 +1,7 @@
 // glint.camera
 #include <string.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/lua.h"
 #include "engine/glint.h"
 
 typedef glint_camera_desc desc_type;

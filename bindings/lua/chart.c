@@ -1,6 +1,6 @@
 // The series of glint.chart: tables with label, x, y, color, width and dots; charts as pictures of their own.
 #include "bindings/lua/overlay.h"
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 #include "bindings/value/array.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 // glint.group: a list of shapes under one transform; and the combined solids: their parts and methods.
 #include <stdio.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/lua.h"
 #include "engine/glint.h"
 
 static glint_shape *check_group(lua_State *L, int index)

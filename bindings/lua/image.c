@@ -1,7 +1,7 @@
 // Images, which scene:render returns.
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 static const glintL_field NO_FIELDS[] = { { .name = NULL } };
 

@@ -2,7 +2,7 @@
 //
 // Most scripts never do, so that resuming a loop costs nothing. On the first access the userdata becomes an ordinary
 // image: it is a glintL_box followed by a plan.
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 #define KEPT_IMAGE "glint.kept_image"
 

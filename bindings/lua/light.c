@@ -1,7 +1,7 @@
 // glint.point_light, directional_light, spot_light, disk_light, polygon_light, sphere_light
 #include <string.h>
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/lua.h"
 #include "engine/glint.h"
 
 typedef glint_light_desc desc_type;

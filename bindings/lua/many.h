@@ -3,7 +3,7 @@
 #ifndef GLINT_L_MANY_H
 #define GLINT_L_MANY_H
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/lua.h"
 
 /// The fields of a constructor that makes many objects from one table, its first argument. `object` and `each` name
 /// the objects in messages. The other fields are positions on the stack, reserved by the constructor.

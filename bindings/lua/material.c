@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 typedef glint_material_desc desc_type;
 

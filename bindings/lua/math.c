@@ -1,5 +1,5 @@
 // glint.sin and similar functions: their results have the same bits on every machine, unlike the C library's.
-#include "bindings/value/glintL.h"
+#include "bindings/lua/lua.h"
 
 static int apply(lua_State *L, const char *path, double (*function)(double))
 {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "bindings/lua/many.h"
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 typedef struct arguments {
     glint_mesh_desc desc;

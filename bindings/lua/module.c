@@ -2,6 +2,7 @@
 #include <lualib.h>
 #include <string.h>
 
+#include "bindings/lua/lua.h"
 #include "bindings/run/carried.h"
 #include "bindings/run/system.h"
 
@@ -104,17 +105,44 @@ static int exposure(lua_State *L)
     return 1;
 }
 
+// Methods of vectors.
+static const luaL_Reg METHODS[] = {
+    { "unpack", glintL_unpack },
+    { "dot", glintL_dot },
+    { "cross", glintL_cross },
+    { "length", glintL_length },
+    { "unit", glintL_unit },
+    { "reflect", glintL_reflect },
+    { NULL, NULL },
+};
+
+// What the values call of the layers above them.
+static const glintL_tracing ABOVE = {
+    .place = glintL_traced_position,
+    .is_source = glintL_is_source,
+    .refuse = glintL_refuse_within_trace,
+    .keep = glintL_keep_source,
+    .keep_all = glintL_keep_sources,
+    .keep_closed = glintL_keep_closed,
+    .methods = METHODS,
+    .map_array = glintL_map_array,
+    .frame_field = glintL_render_find,
+};
+
 __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
 {
     static void (*const parts[])(lua_State *) = {
         glintL_open_vector,    glintL_open_array,    glintL_open_rows,      glintL_open_unpack,      glintL_open_material, glintL_open_light,     glintL_open_camera,
         glintL_open_transform, glintL_open_shape,    glintL_open_overlay, glintL_open_scene,     glintL_open_image,     glintL_open_picture,
         glintL_open_math,      glintL_open_variable,  glintL_open_params,   glintL_open_animation, glintL_open_patterns,
+        glintL_open_texture,
     };
     luaL_checkversion(L);
     glintL_open_run(L);
     glintL_open_own(L);
-    glintL_set_tracing(L, &glintL_patterns);
+    glintL_add_own(L, glintL_sheet_functions);
+    glintL_add_own(L, glintL_sweep_functions);
+    glintL_set_tracing(L, &ABOVE);
     lua_newtable(L);
     lua_pushliteral(L, GLINT_VERSION);
     lua_setfield(L, -2, "version");

@@ -7,7 +7,7 @@
 #ifndef GLINT_L_OVERLAY_H
 #define GLINT_L_OVERLAY_H
 
-#include "bindings/value/glintL.h"
+#include "bindings/lua/lua.h"
 #include "engine/glint_figures.h"
 #include "engine/glint_inspect.h"
 

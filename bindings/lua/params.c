@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 static const char LIST; // address used as the registry key for the list of all parameters
 

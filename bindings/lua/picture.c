@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 #define PICTURE "glint.picture"
 

@@ -1,7 +1,7 @@
 // glint._row_reader: reads rows of text into arrays. Only for scripts/lib.
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 #include "engine/glint_data.h"
 
 #define READER "glint.rows"

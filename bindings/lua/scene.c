@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 #include "engine/glint_figures.h"
 
 typedef glint_scene_desc desc_type;

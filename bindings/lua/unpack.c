@@ -3,7 +3,7 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 #include "bindings/run/system.h"
 
 #ifdef GLINT_HAVE_ZSTD

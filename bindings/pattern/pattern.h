@@ -9,7 +9,6 @@
 ///   trace.c       a function called with symbols; its result as a program
 ///   points.c      the same function with plain numbers, against the program
 ///   functions.c   the objects that glint.pattern and glint.shader make
-///   texture.c     the objects that glint.texture makes
 ///   colormap.c    glint.colormap: colours of numbers
 ///   reflection.c  material:evaluate with patterns and shaders
 ///   patterns.c    opens all of them
@@ -92,6 +91,8 @@ int glintL_read_position(lua_State *L, int index, const char *path, glintL_term 
 void glintL_push_term(lua_State *L, glintL_term term);
 void glintL_push_choice(lua_State *L, glintL_term term); ///< for a value of 0 or 1; see glintL_trace.before
 void glintL_push_operand(lua_State *L, const glintL_operand *operand);
+/// Computes red, green, blue and alpha of a texture. in: u, v, and the footprint along each. Numbers give numbers.
+void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[4], glintL_term out[4]);
 
 // ---- symbol.c, triple.c ----
 
@@ -152,11 +153,6 @@ glintL_pattern *glintL_push_pattern(lua_State *L, glint_program_kind kind, const
 int glintL_pattern_evaluate(lua_State *L); ///< the method `evaluate`
 int glintL_map_array(lua_State *L); ///< the method `map` of arrays
 
-// ---- texture.c ----
-
-/// Computes red, green, blue and alpha of a texture. in: u, v, and the footprint along each. Numbers give numbers.
-void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[4], glintL_term out[4]);
-
 // ---- Opened by patterns.c ----
 
 void glintL_open_symbol(lua_State *L);
@@ -165,8 +161,47 @@ void glintL_open_operation(lua_State *L);
 void glintL_open_tiling(lua_State *L);
 void glintL_open_input(lua_State *L);
 void glintL_open_trace(lua_State *L);
-void glintL_open_texture(lua_State *L);
 void glintL_open_colormap(lua_State *L);
 void glintL_open_functions(lua_State *L);
+
+// ---- For the other parts of the binding ----
+
+/// Returns whether the value is a program that a field can have: a shader for a shader's field, otherwise a pattern or
+/// texture.
+bool glintL_is_source(lua_State *L, int index, bool is_shader);
+/// Methods of vectors and triples; also glint.dot and so on.
+int glintL_dot(lua_State *L);
+int glintL_cross(lua_State *L);
+int glintL_length(lua_State *L);
+int glintL_unit(lua_State *L);
+int glintL_reflect(lua_State *L);
+/// Returns the position of the traced function: "scene.lua:12: ". `reached` is a C function on the call stack of an
+/// error. NULL: it is not the one that calls traced functions.
+const char *glintL_traced_position(lua_State *L, lua_CFunction reached);
+/// Raises if a pattern's function is running, during which `what` would change the scene.
+void glintL_refuse_within_trace(lua_State *L, const char *what);
+/// Stores the patterns in the constructor's table at `table` with the object whose userdata is at `index`.
+void glintL_keep_sources(lua_State *L, int index, int table, const glintL_field *fields);
+/// Stores the pattern of one field, whose value is at `value`.
+void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value);
+/// Called before the script closes the userdata at `index`: its patterns stay with the object.
+void glintL_keep_closed(lua_State *L, int index);
+/// Runs the functions of the patterns of all materials in the scene, and sets the materials' programs.
+void glintL_trace_scene(lua_State *L, const glint_scene *scene);
+/// Runs the functions of one material, whose userdata is at `index`.
+void glintL_trace_material(lua_State *L, int index);
+/// The directions for material:evaluate. They need not be unit vectors.
+typedef struct glintL_geometry {
+    double normal[3], to_light[3], to_eye[3];
+    double p[3]; ///< read by patterns and shaders as p and s.world
+} glintL_geometry;
+
+/// As glint_material_evaluate, but also for materials with programs: at one point, without bumps.
+glint_status glintL_evaluate_material(const glint_material *material, const glintL_geometry *at, glint_reflection *out,
+                                      glint_error *error);
+void glintL_open_patterns(lua_State *L);
+/// colormap.c: reads a map as 256 sRGB colours, from a list of evenly spaced colours or from a function of 0 ..
+/// 1, which it calls. With a list it allocates nothing.
+void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
 
 #endif

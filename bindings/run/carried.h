@@ -26,7 +26,9 @@ void glintL_open_own(lua_State *L);
 void glintL_call_own(lua_State *L, const char *module, const char *function, int arguments, int results);
 /// Sets the field `function` of the table on top to a function of the module.
 void glintL_set_own_function(lua_State *L, const char *module, const char *function);
-extern const luaL_Reg glintL_sheet_functions[], glintL_sweep_functions[]; ///< C functions for the modules
+/// Adds C functions for the modules.
+void glintL_add_own(lua_State *L, const luaL_Reg *functions);
+extern const luaL_Reg glintL_sheet_functions[], glintL_sweep_functions[];
 
 // ---- carried.c ----
 

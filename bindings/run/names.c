@@ -193,3 +193,14 @@ bool glintL_name_file(const glintL_naming *naming, int64_t number, const char *p
     }
     return true;
 }
+
+const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE])
+{
+    if (pass < GLINT_PASS_DERIVATIVE)
+        return glint_pass_name(pass);
+    if (pass < GLINT_PASS_LIGHT)
+        snprintf(room, GLINTL_PASS_NAME_SIZE, "d:%s", work->render.derivative[pass - GLINT_PASS_DERIVATIVE]);
+    else
+        snprintf(room, GLINTL_PASS_NAME_SIZE, "light:%s", glint_plan_light_pass(work->plan, (size_t)pass - GLINT_PASS_LIGHT));
+    return room;
+}

@@ -146,14 +146,19 @@ static void push_own(lua_State *L)
     lua_pop(L, 2);
     luaL_newlib(L, tools);
     luaL_setfuncs(L, glintL_carried_functions, 0);
-    luaL_setfuncs(L, glintL_sheet_functions, 0);
-    luaL_setfuncs(L, glintL_sweep_functions, 0);
     glintL_set_text(L, "version", GLINT_VERSION);
     lua_createtable(L, 0, 1);
     glintL_set_function(L, "__index", load_module);
     lua_setmetatable(L, -2);
     lua_pushvalue(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &OWN);
+}
+
+void glintL_add_own(lua_State *L, const luaL_Reg *functions)
+{
+    push_own(L);
+    luaL_setfuncs(L, functions, 0);
+    lua_pop(L, 1);
 }
 
 void glintL_call_own(lua_State *L, const char *module, const char *function, int arguments, int results)

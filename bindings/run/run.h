@@ -28,7 +28,7 @@
 #include <stdio.h>
 
 #include "bindings/run/render_fields.h"
-#include "bindings/value/glintL.h"
+#include "bindings/pattern/pattern.h"
 #include "engine/glint_files.h"
 #include "engine/glint_inspect.h"
 #include "engine/glint_programs.h"
@@ -45,6 +45,23 @@ typedef enum glintL_exit {
     GLINTL_EXIT_USAGE = 2, ///< usage or script error
     GLINTL_EXIT_LATER = 75 ///< disk full
 } glintL_exit;
+
+// ---- state.c: the current run. One per lua_State, in the registry; plain Lua has one with no options ----
+
+/// The request of the command line (or :run{}). The run owns the strings.
+typedef struct glintL_run glintL_run;
+glintL_run *glintL_get_run(lua_State *L); ///< NULL only before glintL_open_run
+void glintL_open_run(lua_State *L); ///< makes a run, which the state owns, unless there is one
+int luaopen_glint(lua_State *L); ///< lua/module.c: the module
+/// scene:render{...} for the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders
+/// it, and writes its files. Pushes an image, or nil and "skipped". Returns the number of results.
+int glintL_render_call(lua_State *L, glint_scene *scene, int index);
+
+extern const char *const glintL_colormaps[]; ///< names of glint_colormap, NULL at the end
+extern const char *const glintL_tone_curves[]; ///< names of glint_tone_curve, NULL at the end
+extern const char *const glintL_pass_colormaps[]; ///< "none" and the names of glint_colormap, NULL at the end
+/// run/curves.c: computes the points of the scene's lobes, paths and frustums from its present state.
+void glintL_update_curves(lua_State *L, const glint_scene *scene);
 
 // ---- selection.c ----
 
@@ -612,7 +629,6 @@ typedef struct glintL_job {
     glintL_render render;
 } glintL_job;
 
-int glintL_new_sweep(lua_State *L);
 int glintL_job_run(lua_State *L); ///< animation:run{...}
 /// Reads the constructor's table at `index` into the job at `job_index`. Both are absolute.
 void glintL_job_read_table(lua_State *L, int index, int job_index);
@@ -621,6 +637,10 @@ void glintL_sweep_build(lua_State *L, int index, int64_t n);
 /// Pushes a userdata with default fields; see GLINTL_JOB_... for its user values.
 glintL_job *glintL_push_job(lua_State *L, glintL_job_kind kind);
 const char *glintL_job_name(glintL_job_kind kind); ///< "animation", "sweep"
+const glintL_field *glintL_job_fields(glintL_job_kind kind); ///< the fields that are not a frame's; only their names
+/// Reads the value at `index` into a field of the job at `job_index`. Both are absolute.
+void glintL_job_read_field(lua_State *L, int index, int job_index, const char *name);
+int glintL_job_unknown_field(lua_State *L, const glintL_job *job, const char *name); ///< raises
 /// Returns the time of frame n of the job, 0 .. 1.
 double glintL_job_time(const glintL_job *job, int64_t n);
 /// Returns the shutter's k-th of `times` moments, from 0, at frame n. The moments cover the share `share` of the
@@ -692,17 +712,5 @@ void glintL_push_params(lua_State *L);
 const char *glintL_push_allowed(lua_State *L, int spec);
 /// Pushes the message about a --set that matches no params table; or pushes nothing and returns false.
 bool glintL_push_unknown_set(lua_State *L);
-
-// ---- json.c ----
-
-/// Writes the shortest text that reads back as the same number.
-void glintL_format_number(char out[32], double value);
-void glintL_json_string(FILE *out, const char *text);
-/// Writes text of `size` bytes before a zero byte, for people: control characters except newline and tab, and bytes that
-/// are not UTF-8, are shown escaped.
-void glintL_put_text(FILE *out, const char *text, size_t size);
-void glintL_json_number(FILE *out, double value); ///< null if it is not finite
-/// Prints a format that has only %s, a JSON string or null, and %g, a JSON number.
-__attribute__((format(printf, 2, 3))) void glintL_json(FILE *out, const char *format, ...);
 
 #endif

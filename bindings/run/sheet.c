@@ -208,6 +208,7 @@ const luaL_Reg glintL_sheet_functions[] = {
 
 int glintL_sheet_make(lua_State *L, char message[GLINTL_MESSAGE_SIZE])
 {
+    glintL_add_own(L, glintL_sheet_functions);
     glintL_call_own(L, "sheet", "make", 1, 2);
     const int code = (int)lua_tointeger(L, -2);
     snprintf(message, GLINTL_MESSAGE_SIZE, "%s", lua_isnil(L, -1) ? "" : lua_tostring(L, -1));

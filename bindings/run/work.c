@@ -91,17 +91,6 @@ static glint_write_desc write_desc(const glintL_work *work, const glintL_file *f
     return desc;
 }
 
-const char *glintL_pass_name(const glintL_work *work, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE])
-{
-    if (pass < GLINT_PASS_DERIVATIVE)
-        return glint_pass_name(pass);
-    if (pass < GLINT_PASS_LIGHT)
-        snprintf(room, GLINTL_PASS_NAME_SIZE, "d:%s", work->render.derivative[pass - GLINT_PASS_DERIVATIVE]);
-    else
-        snprintf(room, GLINTL_PASS_NAME_SIZE, "light:%s", glint_plan_light_pass(work->plan, (size_t)pass - GLINT_PASS_LIGHT));
-    return room;
-}
-
 // Names one pass's file and computes its keys.
 static glint_status add_file(glintL_work *work, const glintL_naming *naming, glint_pass pass, glint_error *error)
 {

@@ -132,6 +132,23 @@ int glintL_refuse(lua_State *L, int index, const char *path, const char *expecte
     return glintL_error(L, "%s%s%s expected, got %s%s", path, *path ? ": " : "", expected, got, cure);
 }
 
+int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near)
+{
+    const char *dot = *path ? "." : "";
+    char shown[SPELT_MAX + 1];
+    snprintf(shown, sizeof shown, "%s", name);
+    for (char *c = shown; *c; c++)
+        *c = iscntrl((unsigned char)*c) ? '?' : *c;
+    if (strcmp(path, "scene") == 0 && glintL_get_tracing(L)->frame_field(name) >= 0) {
+        const bool is_depth = strcmp(name, "max_depth") == 0;
+        return glintL_error(L, "scene.%s: no such field; it belongs to scene:render and glint.animation%s", shown,
+                            is_depth ? ", or to the command as --max-depth" : "");
+    }
+    if (near)
+        return glintL_error(L, "%s%s%s: no such field; did you mean '%s'?", path, dot, shown, near);
+    return glintL_error(L, "%s%s%s: no such field", path, dot, shown);
+}
+
 // ---- Numbers, vectors and lists ----
 
 int glintL_bad_key(lua_State *L, const char *path, int index)
@@ -172,8 +189,6 @@ static void check_three_keys(lua_State *L, int index, const char *path, const ch
         }
     }
 }
-
-const double *glintL_to_vector(lua_State *L, int index) { return luaL_testudata(L, index, GLINTL_VECTOR_TYPE); }
 
 void glintL_read_three(lua_State *L, int index, const char *path, const char *expected, double out[3])
 {

@@ -4,19 +4,12 @@
 
 #include "bindings/value/glintL.h"
 
-static const char LISTED; // address used as the registry key for the result of glint._fields()
-
 typedef union description { // description of any object
     max_align_t align;
     char bytes[GLINTL_DESC_SIZE];
 } description;
 
 // ---- Fields ----
-
-const glintL_field *glintL_fields_of(const glintL_variant *variant)
-{
-    return variant->kind ? glint_object_fields(variant->kind, NULL) : variant->fields;
-}
 
 // Returns the class, the first upvalue of each metamethod. 1: the object.
 static const glintL_class *this_class(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
@@ -267,44 +260,6 @@ static int to_string(lua_State *L)
     return 1;
 }
 
-void glintL_set_text(lua_State *L, const char *name, const char *value)
-{
-    lua_pushstring(L, value);
-    lua_setfield(L, -2, name);
-}
-
-void glintL_set_number(lua_State *L, const char *name, double value)
-{
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, name);
-}
-
-void glintL_set_whole(lua_State *L, const char *name, lua_Integer value)
-{
-    lua_pushinteger(L, value);
-    lua_setfield(L, -2, name);
-}
-
-void glintL_set_flag(lua_State *L, const char *name, bool value)
-{
-    lua_pushboolean(L, value);
-    lua_setfield(L, -2, name);
-}
-
-void glintL_set_function(lua_State *L, const char *name, lua_CFunction value)
-{
-    lua_pushcfunction(L, value);
-    lua_setfield(L, -2, name);
-}
-
-void glintL_new_type(lua_State *L, const char *type, const luaL_Reg *functions)
-{
-    luaL_newmetatable(L, type);
-    luaL_setfuncs(L, functions, 0);
-    glintL_set_flag(L, "__metatable", false);
-    lua_pop(L, 1);
-}
-
 void glintL_open_class(lua_State *L, const glintL_class *class)
 {
     static const luaL_Reg meta[] = {
@@ -335,42 +290,18 @@ void glintL_open_class(lua_State *L, const glintL_class *class)
     lua_pop(L, 1);
 }
 
-static void list_functions(lua_State *L, const luaL_Reg *functions, const char *how)
-{
-    for (; functions && functions->name; functions++) {
-        lua_pushstring(L, how);
-        lua_setfield(L, -2, functions->name);
-    }
-}
-
-void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods)
-{
-    glintL_push_table(L, &LISTED);
-    lua_newtable(L);
-    for (const glintL_field *field = glintL_fields_of(variant); field && field->name; field++) {
-        lua_pushliteral(L, "field");
-        lua_setfield(L, -2, field->name);
-    }
-    list_functions(L, variant->getters, "field");
-    list_functions(L, methods, "method");
-    lua_setfield(L, -2, variant->name);
-    lua_pop(L, 1);
-    if (variant->kind)
-        glintL_note_rows(L, variant);
-}
-
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *class)
 {
     static const luaL_Reg parts[] = { { "x", NULL }, { "y", NULL }, { "z", NULL }, { NULL, NULL } };
     static const luaL_Reg kind[] = { { "kind", NULL }, { NULL, NULL } };
     static const luaL_Reg close[] = { { "close", close_object }, { NULL, NULL } };
     glintL_list_variant(L, variant, class->methods);
-    glintL_push_table(L, &LISTED);
+    glintL_push_listed(L);
     lua_getfield(L, -1, variant->name);
-    list_functions(L, variant->place ? parts : NULL, "field");
-    list_functions(L, kind, "field");
-    list_functions(L, variant->methods, "method");
-    list_functions(L, close, "method");
+    glintL_list_functions(L, variant->place ? parts : NULL, "field");
+    glintL_list_functions(L, kind, "field");
+    glintL_list_functions(L, variant->methods, "method");
+    glintL_list_functions(L, close, "method");
     lua_pop(L, 2);
 }
 
@@ -400,7 +331,7 @@ static int new_object(lua_State *L)
     glintL_check_status(L, variant->name, &error, class->create(&desc, &object, &error));
     box->object = object;
     glintL_remember(L, object);
-    glintL_keep_sources(L, 2, 1, fields);
+    glintL_get_tracing(L)->keep_all(L, 2, 1, fields);
     glintL_keep_table_slopes(L, 2, 1, fields);
     if (class->made)
         class->made(L, &desc);
@@ -420,5 +351,3 @@ void glintL_open_objects(lua_State *L, const glintL_class *class, const glintL_v
         lua_setfield(L, -2, variants[i].name);
     }
 }
-
-void glintL_push_listed(lua_State *L) { glintL_push_table(L, &LISTED); }

@@ -78,8 +78,6 @@ void glintL_push_dual(lua_State *L, const glintL_dual *d)
     luaL_setmetatable(L, GLINTL_DUAL);
 }
 
-const glintL_dual *glintL_to_dual(lua_State *L, int index) { return luaL_testudata(L, index, GLINTL_DUAL); }
-
 bool glintL_read_dual(lua_State *L, int index, glintL_dual *out)
 {
     const glintL_dual *d = glintL_to_dual(L, index);

@@ -8,6 +8,7 @@
 
 #include <lauxlib.h>
 #include <lua.h>
+#include <stdio.h>
 
 #include "engine/glint_inspect.h"
 #include "engine/glint_programs.h"
@@ -100,7 +101,7 @@ void glintL_push_vector(lua_State *L, const double v[3]);
 void glintL_push_texel(lua_State *L, const double v[4]);
 #define GLINTL_VECTOR_TYPE "glint.vector"
 /// Returns NULL if the value at index is not a vector.
-const double *glintL_to_vector(lua_State *L, int index);
+static inline const double *glintL_to_vector(lua_State *L, int index) { return luaL_testudata(L, index, GLINTL_VECTOR_TYPE); }
 int glintL_unpack(lua_State *L); ///< the method `unpack`
 
 // ---- array.c: blocks of numbers ----
@@ -153,14 +154,15 @@ void glintL_push_variable(lua_State *L, const char *name, double value);
 /// Return the variable's number, from 0 (-1: none), and the nearest variable's name, or NULL.
 int glintL_find_variable(lua_State *L, const char *name);
 const char *glintL_near_variable(lua_State *L, const char *name);
-/// lua/variable.c: pushes a variable. When the first variable is made, extends `math` to dual numbers.
+/// variable.c: pushes a variable. When the first variable is made, extends `math` to dual numbers.
 void glintL_make_variable(lua_State *L, const char *name, double value);
 /// Pushes the result of glint's elementary function of that name for the dual number at 1. Returns false and pushes
 /// nothing for other names.
 bool glintL_dual_function(lua_State *L, const char *name);
 /// Pushes a dual number, or a plain number if no slope is set.
 void glintL_push_dual(lua_State *L, const glintL_dual *d);
-const glintL_dual *glintL_to_dual(lua_State *L, int index); ///< NULL: not a dual number
+/// Returns NULL if the value at index is not a dual number.
+static inline const glintL_dual *glintL_to_dual(lua_State *L, int index) { return luaL_testudata(L, index, GLINTL_DUAL); }
 /// Reads a dual number or a number; false: it is neither.
 bool glintL_read_dual(lua_State *L, int index, glintL_dual *out);
 /// Returns the value of a function of a (and b, or NULL), whose derivatives by them are by_a and by_b.
@@ -198,67 +200,28 @@ void glintL_read_pose(lua_State *L, int index, const char *path, const glintL_fi
 /// Pushes nil if the view is along `up`.
 void glintL_push_pose(lua_State *L, const glintL_field *parts, const void *desc);
 
-// ---- Patterns as values: bindings/pattern is a layer above, and registers its functions when the module opens ----
+// ---- Functions of the layers above, which lua/module.c registers ----
 
-/// The functions of bindings/pattern that this layer calls: glintL_traced_position, glintL_is_source and so on, which
-/// are declared below.
+/// The functions of bindings/pattern and bindings/run that this layer calls.
 typedef struct glintL_tracing {
     const char *(*place)(lua_State *L,
                          lua_CFunction reached); ///< glintL_traced_position
     bool (*is_source)(lua_State *L, int index, bool is_shader);
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
+    void (*keep_all)(lua_State *L, int index, int table, const glintL_field *fields);
     void (*keep_closed)(lua_State *L, int index);
     const luaL_Reg *methods; ///< methods of vectors; ended by a NULL name
     lua_CFunction map_array; ///< the method `map` of arrays
+    int (*frame_field)(const char *name); ///< glintL_render_find
 } glintL_tracing;
 
-extern const glintL_tracing glintL_patterns; ///< bindings/pattern/patterns.c
 void glintL_set_tracing(lua_State *L, const glintL_tracing *tracing);
 const glintL_tracing *glintL_get_tracing(lua_State *L); ///< NULL before the module is opened
-
-// ---- bindings/pattern: patterns and shaders ----
 
 #define GLINTL_PATTERN "glint.pattern"
 #define GLINTL_SHADER "glint.shader"
 #define GLINTL_TEXTURE "glint.texture"
-
-/// Returns whether the value is a program that a field can have: a shader for a shader's field, otherwise a pattern or
-/// texture.
-bool glintL_is_source(lua_State *L, int index, bool is_shader);
-/// Methods of vectors and triples; also glint.dot and so on.
-int glintL_dot(lua_State *L);
-int glintL_cross(lua_State *L);
-int glintL_length(lua_State *L);
-int glintL_unit(lua_State *L);
-int glintL_reflect(lua_State *L);
-/// Returns the position of the traced function: "scene.lua:12: ". `reached` is a C function on the call stack of an
-/// error. NULL: it is not the one that calls traced functions.
-const char *glintL_traced_position(lua_State *L, lua_CFunction reached);
-/// Raises if a pattern's function is running, during which `what` would change the scene.
-void glintL_refuse_within_trace(lua_State *L, const char *what);
-/// Stores the patterns in the constructor's table at `table` with the object whose userdata is at `index`.
-void glintL_keep_sources(lua_State *L, int index, int table, const glintL_field *fields);
-/// Stores the pattern of one field, whose value is at `value`.
-void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value);
-/// Called before the script closes the userdata at `index`: its patterns stay with the object.
-void glintL_keep_closed(lua_State *L, int index);
-/// Runs the functions of the patterns of all materials in the scene, and sets the materials' programs.
-void glintL_trace_scene(lua_State *L, const glint_scene *scene);
-/// Runs the functions of one material, whose userdata is at `index`.
-void glintL_trace_material(lua_State *L, int index);
-/// run/curves.c: computes the points of the scene's lobes, paths and frustums from its present state.
-void glintL_update_curves(lua_State *L, const glint_scene *scene);
-/// The directions for material:evaluate. They need not be unit vectors.
-typedef struct glintL_geometry {
-    double normal[3], to_light[3], to_eye[3];
-    double p[3]; ///< read by patterns and shaders as p and s.world
-} glintL_geometry;
-
-/// As glint_material_evaluate, but also for materials with programs: at one point, without bumps.
-glint_status glintL_evaluate_material(const glint_material *material, const glintL_geometry *at, glint_reflection *out,
-                                      glint_error *error);
-void glintL_open_patterns(lua_State *L);
 
 // ---- object.c: boxes ----
 
@@ -375,7 +338,7 @@ void glintL_push_table(lua_State *L, const void *key);
 /// Pushes such a table with weak keys ("k") or values ("v").
 void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 
-// ---- class.c: fields and metatables of boxes ----
+// ---- type.c: metatables of types ----
 
 /// Each sets a field of the table on top of the stack. `value` of a text may be NULL: nil.
 void glintL_set_text(lua_State *L, const char *name, const char *value);
@@ -385,6 +348,13 @@ void glintL_set_flag(lua_State *L, const char *name, bool value);
 void glintL_set_function(lua_State *L, const char *name, lua_CFunction value);
 /// Makes the metatable of a type, which scripts cannot read.
 void glintL_new_type(lua_State *L, const char *type, const luaL_Reg *functions);
+/// Lists functions as `how`, "field" or "method", in the table on top of the stack.
+void glintL_list_functions(lua_State *L, const luaL_Reg *functions, const char *how);
+/// Returns the variant of that name that has a table in the engine, or NULL.
+const glintL_variant *glintL_find_variant(lua_State *L, const char *name);
+
+// ---- class.c: fields and metatables of boxes ----
+
 /// Makes the metatable of a class.
 void glintL_open_class(lua_State *L, const glintL_class *type);
 /// Makes the metatable of a class, and adds the constructors of its variants to the table on top of the stack.
@@ -400,7 +370,6 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
 /// for each field. The list is empty if the object has no table in the engine.
 int glintL_list_rows(lua_State *L);
 void glintL_push_default(lua_State *L, const glintL_field *field); ///< nil: the field has no default value
-void glintL_note_rows(lua_State *L, const glintL_variant *variant); ///< adds a variant to that list
 /// Pushes the result of glint._fields(): variant -> name -> "field" or "method".
 void glintL_push_listed(lua_State *L);
 /// Pushes the name of the object at `index` for messages ("plane", "closed shape"); false: it belongs to no class, and
@@ -409,57 +378,18 @@ bool glintL_push_object_name(lua_State *L, int index);
 
 /// Each file's part of the module: adds its constructors to the table on top of the stack, and makes its metatables.
 void glintL_open_vector(lua_State *L);
-void glintL_open_material(lua_State *L);
 void glintL_open_variable(lua_State *L);
-void glintL_open_light(lua_State *L);
-void glintL_open_camera(lua_State *L);
 void glintL_open_transform(lua_State *L);
-void glintL_open_shape(lua_State *L);
-void glintL_open_overlay(lua_State *L); ///< label, colorbar, axes, arrow, line, arc, polyline, lobe, path, frustum
-void glintL_open_scene(lua_State *L);
-void glintL_open_image(lua_State *L);
-void glintL_open_math(lua_State *L);
-void glintL_open_params(lua_State *L);
-void glintL_open_animation(lua_State *L); ///< animation and sweep
-int luaopen_glint(lua_State *L);
+// ---- json.c ----
 
-/// pattern/colormap.c: reads a map as 256 sRGB colours, from a list of evenly spaced colours or from a function of 0 ..
-/// 1, which it calls. With a list it allocates nothing.
-void glintL_read_colors(lua_State *L, int index, const char *path, uint8_t rgb[256][3]);
-/// picture.c: glint.read_image.
-void glintL_open_picture(lua_State *L);
-/// rows.c: glint._row_reader, the reader of rows of text.
-void glintL_open_rows(lua_State *L);
-/// unpack.c: glint._unpack, the reader of compressed files.
-void glintL_open_unpack(lua_State *L);
-/// Writes the four bytes of a float32, little endian; returns the position after them.
-char *glintL_put_float(char *to, float value);
-
-/// The constructors glint.spheres, glint.cylinders and glint._bonds, in spheres.c.
-int glintL_new_spheres(lua_State *L);
-int glintL_new_cylinders(lua_State *L);
-int glintL_new_bonds(lua_State *L);
-/// The constructors glint.mesh and glint.sphere_mesh, in mesh.c.
-int glintL_new_mesh(lua_State *L);
-int glintL_new_sphere_mesh(lua_State *L);
-/// group.c: methods, the getter `count`, and the children in the list at `list`.
-int glintL_group_add(lua_State *L);
-int glintL_group_remove(lua_State *L);
-void glintL_group_push_at(lua_State *L, const void *group, size_t index);
-void glintL_group_fill(lua_State *L, int list, int index, const char *name);
-
-// ---- state.c: the current run. One per lua_State, in the registry; plain Lua has one with no options ----
-
-/// The request of the command line (or :run{}). The run owns the strings.
-typedef struct glintL_run glintL_run;
-glintL_run *glintL_get_run(lua_State *L); ///< NULL only before glintL_open_run
-void glintL_open_run(lua_State *L); ///< makes a run, which the state owns, unless there is one
-/// scene:render{...} for the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders
-/// it, and writes its files. Pushes an image, or nil and "skipped". Returns the number of results.
-int glintL_render_call(lua_State *L, glint_scene *scene, int index);
-
-extern const char *const glintL_colormaps[]; ///< names of glint_colormap, NULL at the end
-extern const char *const glintL_tone_curves[]; ///< names of glint_tone_curve, NULL at the end
-extern const char *const glintL_pass_colormaps[]; ///< "none" and the names of glint_colormap, NULL at the end
+/// Writes the shortest text that reads back as the same number.
+void glintL_format_number(char out[32], double value);
+void glintL_json_string(FILE *out, const char *text);
+/// Writes text of `size` bytes before a zero byte, for people: control characters except newline and tab, and bytes that
+/// are not UTF-8, are shown escaped.
+void glintL_put_text(FILE *out, const char *text, size_t size);
+void glintL_json_number(FILE *out, double value); ///< null if it is not finite
+/// Prints a format that has only %s, a JSON string or null, and %g, a JSON number.
+__attribute__((format(printf, 2, 3))) void glintL_json(FILE *out, const char *format, ...);
 
 #endif

@@ -53,7 +53,8 @@ void glintL_push_weak_table(lua_State *L, const void *key, const char *mode)
     glintL_push_table(L, key);
     if (!lua_getmetatable(L, -1)) {
         lua_createtable(L, 0, 1);
-        glintL_set_text(L, "__mode", mode);
+        lua_pushstring(L, mode);
+        lua_setfield(L, -2, "__mode");
         lua_pushvalue(L, -1);
         lua_setmetatable(L, -3);
     }

@@ -77,21 +77,9 @@ static void push_rows(lua_State *L, const glintL_field *fields)
     }
 }
 
-static const char VARIANTS; // address used as the registry key for the variants with rows, by name
-
-void glintL_note_rows(lua_State *L, const glintL_variant *variant)
-{
-    glintL_push_table(L, &VARIANTS);
-    lua_pushlightuserdata(L, (void *)(uintptr_t)variant);
-    lua_setfield(L, -2, variant->name);
-    lua_pop(L, 1);
-}
-
 int glintL_list_rows(lua_State *L)
 {
-    glintL_push_table(L, &VARIANTS);
-    lua_getfield(L, -1, luaL_checkstring(L, 1));
-    const glintL_variant *variant = lua_touserdata(L, -1);
+    const glintL_variant *variant = glintL_find_variant(L, luaL_checkstring(L, 1));
     push_rows(L, variant ? glintL_fields_of(variant) : NULL);
     return 1;
 }

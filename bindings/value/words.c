@@ -1,6 +1,5 @@
 // Misspelt words: finds the nearest known word, or the equivalent of a name from other programs.
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -135,23 +134,4 @@ const char *glintL_meaning(const char *name, bool (*has)(const void *context, co
         if (strcasecmp(MEANINGS[i][0], name) == 0 && has(context, MEANINGS[i][1]))
             return MEANINGS[i][1];
     return NULL;
-}
-
-int glintL_render_find(const char *name); // of bindings/run: returns the number of a frame's field, or -1
-
-int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near)
-{
-    const char *dot = *path ? "." : "";
-    char shown[WORD_MAX + 1];
-    snprintf(shown, sizeof shown, "%s", name);
-    for (char *c = shown; *c; c++)
-        *c = iscntrl((unsigned char)*c) ? '?' : *c;
-    if (strcmp(path, "scene") == 0 && glintL_render_find(name) >= 0) {
-        const bool is_depth = strcmp(name, "max_depth") == 0;
-        return glintL_error(L, "scene.%s: no such field; it belongs to scene:render and glint.animation%s", shown,
-                            is_depth ? ", or to the command as --max-depth" : "");
-    }
-    if (near)
-        return glintL_error(L, "%s%s%s: no such field; did you mean '%s'?", path, dot, shown, near);
-    return glintL_error(L, "%s%s%s: no such field", path, dot, shown);
 }

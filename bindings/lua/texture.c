@@ -1,6 +1,5 @@
 // glint.texture: a picture, called with u and v inside a pattern, or assigned directly to a field.
-#include "bindings/pattern/pattern.h"
-#include "bindings/run/run.h"
+#include "bindings/lua/lua.h"
 
 #include <string.h>
 
@@ -86,43 +85,6 @@ static int close_texture(lua_State *L)
 }
 
 // ---- photo(u, v, footprint) ----
-
-// Adds a lookup to a builder; numbers give numbers.
-static glint_status apply(glint_builder *builder, const glint_texture *texture, const glintL_term in[4],
-                          glintL_term out[4], glint_error *error)
-{
-    glint_value values[4], color[4];
-    glint_status status = GLINT_OK;
-    for (int i = 0; i < 4 && !status; i++) {
-        values[i] = in[i].value;
-        if (!in[i].is_symbol)
-            status = glint_builder_number(builder, in[i].number, &values[i], error);
-    }
-    if (!status)
-        status = glint_builder_texel_by_axis(builder, texture, values[0], values[1], values + 2, color, error);
-    for (int i = 0; i < 4 && !status; i++) {
-        out[i] = (glintL_term) { .value = color[i] };
-        out[i].is_symbol = !glint_builder_is_number(builder, color[i], &out[i].number);
-    }
-    return status;
-}
-
-// Looks up a texel. With only plain numbers there may be no builder; then the call makes one.
-void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[4], glintL_term out[4])
-{
-    const glintL_trace *trace = glintL_current_trace(L);
-    glint_builder *builder = trace ? trace->builder : NULL;
-    glint_error error;
-    if (builder) {
-        glintL_check_status(L, "texture", &error, apply(builder, texture, in, out, &error));
-        return;
-    }
-    glint_status status = glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, &error);
-    if (!status)
-        status = apply(builder, texture, in, out, &error);
-    glint_builder_destroy(builder);
-    glintL_check_status(L, "texture", &error, status);
-}
 
 static int look_up(lua_State *L)
 {

@@ -65,17 +65,6 @@ void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name)
     check_together(L, job_index);
 }
 
-int glintL_new_sweep(lua_State *L)
-{
-    lua_settop(L, 1);
-    glintL_push_job(L, GLINTL_JOB_SWEEP);
-    glintL_job_read_table(L, 1, 2);
-    if (lua_getiuservalue(L, 2, GLINTL_JOB_FRAME) == LUA_TNIL)
-        glintL_refuse(L, -1, "sweep.over", "list of axes");
-    lua_settop(L, 2);
-    return 1;
-}
-
 void glintL_sweep_build(lua_State *L, int index, int64_t n)
 {
     luaL_checkstack(L, 4, "sweep");

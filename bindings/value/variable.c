@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/value/glintL.h"
 
 static const char MATH; // address used as a registry key; the value true means that math is extended
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/run/run.h"
+#include "bindings/value/glintL.h"
 
 void glintL_format_number(char out[32], double value)
 {
