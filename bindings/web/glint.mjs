@@ -236,7 +236,7 @@ const areBytes = value => value instanceof ArrayBuffer || ArrayBuffer.isView(val
 async function compile(wasm) {
   if (wasm instanceof WebAssembly.Module) return wasm
   if (areBytes(wasm)) return WebAssembly.compile(wasm)
-  const answer = await fetched(wasm) // a server that knows the type lets the browser compile while it loads
+  const answer = wasm instanceof Response ? wasm : await fetched(wasm) // a server that knows the type lets the browser compile while it loads
   const isStream = answer.headers.get("content-type") === "application/wasm"
   return isStream ? WebAssembly.compileStreaming(answer) : WebAssembly.compile(await answer.arrayBuffer())
 }
@@ -249,14 +249,15 @@ async function readFont(font) {
 
 class Engine {
   #make
-  constructor(module, font, make) {
-    this.module = module
-    this.font = font
+  #spare
+  constructor(make) {
     this.#make = make
+    this.#spare = isNode ? undefined : make() // the browser reads the worker while it compiles the module
   }
   // Starts a worker. `take` receives its messages; `fail` is called when the worker cannot continue.
   start(take, fail) {
-    const worker = this.#make()
+    const worker = this.#spare ?? this.#make()
+    this.#spare = undefined
     if (worker.on) {
       worker.on("message", take)
       worker.on("error", error => fail(new GlintError(String(error))))
@@ -269,7 +270,7 @@ class Engine {
 }
 
 /**
- * Loads the engine. wasm: glint.wasm as a URL, bytes or a module; worker: the URL of worker.mjs. With a blob URL, the
+ * Loads the engine. wasm: glint.wasm as a URL, bytes, a Response or a module; worker: the URL of worker.mjs. With a blob URL, the
  * text of worker.mjs runs in an async function. font: a TrueType font as a URL or bytes; true: glint.ttf next to
  * glint.mjs, which has letters of DejaVu Sans; without a font, letters are of the bitmap font.
  */
@@ -277,11 +278,11 @@ export async function load({ wasm = "glint.wasm", worker, font } = {}) {
   const url = new URL(worker ?? "worker.mjs", import.meta.url)
   const isBlob = url.protocol === "blob:" // a page opened from disk cannot make a module worker from a blob
   const Worker = isNode ? (await import("node:worker_threads")).Worker : globalThis.Worker
-  const [module, letters] = await Promise.all([compile(wasm), font && readFont(font)])
-  const engine = new Engine(module, letters, () => new Worker(url, isBlob ? {} : { type: "module" }))
+  const engine = new Engine(() => new Worker(url, isBlob ? {} : { type: "module" }))
+  ;[engine.module, engine.font] = await Promise.all([compile(wasm), font && readFont(font)])
   return {
     /** The bytes of the font; undefined: the bitmap font. */
-    font: letters,
+    font: engine.font,
     /** Runs a script. files: { name: text or bytes } to read; set: { name: value }; seconds: limit of each call. */
     async open(source, { name = "scene.lua", files = {}, set = {}, seconds = 10, signal } = {}) {
       const given = spellAll(set)

@@ -11,6 +11,5 @@ export const unzipped = (base64, type) =>
 // while it is decompressed.
 export async function loadFrom(wasm, font) {
   const worker = new Blob(["(async () => {", workerText, "\n})()"], { type: "text/javascript" })
-  const [module, letters] = await Promise.all([WebAssembly.compileStreaming(unzipped(wasm, "application/wasm")), font])
-  return loadWithFont({ wasm: module, font: letters ?? null, worker: URL.createObjectURL(worker) })
+  return loadWithFont({ wasm: unzipped(wasm, "application/wasm"), font: await font ?? null, worker: URL.createObjectURL(worker) })
 }

@@ -51,7 +51,7 @@ glint_layout glint_layout_begin(const glint_overlays *overlays, const glint_over
     layout.typeface = glint_typeface_open(ink->letters, layout.em);
     layout.typeface.least = overlays->least;
     if (desc->kind != GLINT_OVERLAY_LABEL)
-        layout.length = desc->has_length ? overlays->enlarged * glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;
+        layout.length = desc->has_length ? glint_layout_pixels(desc->length, dpi) : lengths[desc->kind] * layout.em;
     layout.padding = desc->has_background ? (int)ceil(PADDING * layout.em) : 0;
     memcpy(layout.text, desc->text, sizeof layout.text);
     return layout;
