@@ -254,7 +254,7 @@ $(BUILD)/engine/render/stages/simd/select.o: OWN := $(KERNELS:%=-DGLINT_KERNEL_%
 $(BUILD)/engine/render/stages/simd/select.o: $(BUILD)/kernels
 $(BUILD)/libglint.a: $(BUILD)/effects
 $(BUILD)/engine/figures/text/letters.o: OWN := $(FONT_CFLAGS)
-$(BUILD)/engine/files/picture/pdf.o: OWN := $(CAIRO_CFLAGS)
+$(BUILD)/engine/files/vector/pdf.o: OWN := $(CAIRO_CFLAGS)
 $(BUILD)/engine/files/picture/jpeg.o: OWN := $(JPEG_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)

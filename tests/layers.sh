@@ -81,8 +81,9 @@ layer engine/figures/ink $figures engine/figures/text $film $base
 layer engine/figures/overlay $figures engine/figures/ink engine/figures/text $film $base
 layer engine/files/data engine/glint_data.h $base
 layer engine/files/mesh engine/glint_files.h $base
-layer engine/files/picture engine/glint_files.h engine/figures/ink engine/figures/text engine/figures/overlay $film $base
-layer engine/files/sheet engine/glint_files.h engine/figures/ink engine/figures/text engine/figures/overlay engine/files/picture $base
+layer engine/files/picture engine/glint_files.h engine/figures/ink engine/figures/text engine/figures/overlay engine/files/vector $film $base
+layer engine/files/vector engine/figures/ink engine/figures/text engine/figures/overlay engine/files/picture $film $base
+layer engine/files/sheet engine/glint_files.h engine/figures/ink engine/figures/text engine/figures/overlay engine/files/picture engine/files/vector $base
 layer engine/compare 'engine/glint_(files|compare).h' engine/files/picture $film $base
 
 public='engine/glint_(files|figures|compare|data).h'

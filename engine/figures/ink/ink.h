@@ -4,7 +4,7 @@
 ///     strokes.c  the coverage of strokes
 ///     stamp.c    marks as stamps, on rows of pixel values
 ///
-/// Overlays, sheets and charts draw with these functions only. A .png takes the stamps; engine/files/picture/svg.c and pdf.c
+/// Overlays, sheets and charts draw with these functions only. A .png takes the stamps; engine/files/vector/svg.c and pdf.c
 /// take the marks, at the same positions. To draw a figure:
 ///
 ///     glint_ink ink;

@@ -4,7 +4,7 @@
 #include "engine/figures/ink/stamps.h"
 #include "engine/figures/overlay/overlay.h"
 #include "engine/files/picture/exr.h"
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 #include "engine/files/picture/file.h"
 #include "engine/files/picture/npy.h"
 #include "engine/files/picture/pfm.h"

@@ -1,6 +1,6 @@
 /// Checks the description of a contact sheet.
 #include "engine/base/status.h"
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 #include "engine/files/sheet/layout.h"
 
 #include <stdio.h>

@@ -13,7 +13,7 @@
 #include "engine/base/number.h"
 #include "engine/base/status.h"
 #include "engine/figures/overlay/overlay.h"
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 #include "engine/files/sheet/layout.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /// The overlays of a picture as vectors, for a page that shows them over its pixels.
 #include "engine/base/status.h"
 #include "engine/figures/overlay/overlay.h"
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 #include "engine/film/image.h"
 
 #include <math.h>

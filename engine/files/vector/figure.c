@@ -1,4 +1,4 @@
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 
 #include "engine/base/status.h"
 #include "engine/figures/ink/stamps.h"

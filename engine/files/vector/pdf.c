@@ -1,5 +1,5 @@
 /// Writes .pdf with cairo, which embeds the letters that the page uses.
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 
 #include "engine/base/status.h"
 

@@ -1,7 +1,7 @@
 /// Writes .svg. The text is in `text` elements, so that readers can select and search it; cairo's SVG has the outlines
 /// of letters only. Therefore this file needs only the libraries that a PNG needs.
 #include "engine/base/number.h"
-#include "engine/files/picture/figure.h"
+#include "engine/files/vector/figure.h"
 
 #include "engine/base/status.h"
 #include "engine/figures/ink/stamps.h"
