@@ -148,6 +148,19 @@ await test("a very heavy figure keeps 160 pixels while a control moves, or answe
   }
 })
 
+await test("a very heavy figure grows back to 160 pixels when the machine is free again", async () => {
+  let factor = 8
+  const one = figure({ fixed: () => 4, sample: () => 4e-3 * factor })
+  await one.step(0)
+  await one.rest()
+  one.seen.length = 0
+  for (let n = 1; n < 40; n++) {
+    if (n === 10) factor = 1
+    await one.step(n)
+  }
+  assert.ok(one.seen[8].width < 160 && one.seen.at(-1).width === 160, `${sizes(one.seen)}`)
+})
+
 await test("the first picture of each drag has the size of a picture whose rays are kept", async () => {
   const one = figure({ fixed: () => 4, sample: () => 1e-3, params: [{ name: "n" }] })
   await one.step(0)

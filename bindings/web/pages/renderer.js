@@ -174,8 +174,9 @@ export class Renderer {
     if (!isFirst) drag.count++
     const ms = await this.#picture(this.job, request, drag.scale, isFirst || drag.count === 1)
     this.scale = drag.scale
-    drag.slow = ms > 2 * ANSWER_MS ? drag.slow + 1 : 0
-    drag.quick = ms < ANSWER_MS / 2 ? drag.quick + 1 : 0
+    const time = this.#sizes(drag.scale).width > LEAST_WIDE ? ANSWER_MS : LEAST_MS
+    drag.slow = ms > 2 * time ? drag.slow + 1 : 0
+    drag.quick = ms < time / 2 ? drag.quick + 1 : 0
     const better = this.#answerScale() / drag.scale
     const isOff = better < 1 ? drag.slow >= OFF : drag.quick >= OFF
     const isDue = drag.changes ? drag.changes < CHANGES && isOff : drag.count >= SETTLED
