@@ -306,6 +306,27 @@ function tests.albedo_for_denoisers()
   end
 end
 
+-- A limit of the light of paths leaves the background that is seen through a piece of rough glass as it is, and limits what
+-- is reflected on the way.
+function tests.a_limit_spares_glass()
+  local function look(clamp, depth)
+    return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, fov = 12 }, background = 10, reflection_samples = 8,
+      glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { diffuse = 0, transmission = 1, fresnel = true, roughness = 0.3 } },
+    }:render { width = 8, height = 8, output = "none", passes = "beauty,transmission", clamp = clamp, max_depth = depth }
+  end
+  for depth = 2, 4 do
+    local free, limited, lower = look(0, depth), look(1, depth), 0
+    for y = 0, 7 do
+      for x = 0, 7 do
+        local a, b = free:pixel(x, y, "transmission"), limited:pixel(x, y, "transmission")
+        lower = lower + (b < a and 1 or 0)
+        check(b <= a and b >= 0.5 * a, "depth %d, pixel %d, %d: %g becomes %g", depth, x, y, a, b)
+      end
+    end
+    check((lower > 0) == (depth > 2), "depth %d: %d pixels are limited", depth, lower)
+  end
+end
+
 -- The pass albedo shows what smooth mirrors and smooth glass show: the blend of the albedos of their rays, 1 for the surroundings.
 function tests.albedo_through_mirrors_and_glass()
   local red, silver = { 0.8, 0.2, 0.1 }, { 0.9, 0.8, 0.7 }

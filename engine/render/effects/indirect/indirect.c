@@ -387,13 +387,14 @@ static void local_light(const glint_batch *batch, uint32_t g, double light[3][GL
 }
 
 /// Scales the weight of light that ray i brings to at most desc.clamp, as if its pixel had only this path. The background
-/// that the first ray of a path shows is not limited. hit: whether the ray hit a surface.
+/// is not limited if the first ray of a path shows it, or the second one through glass. hit: whether the ray hit a surface.
 static void limit_light(const struct glint_indirect *indirect, const glint_plan *plan, uint32_t i, bool hit, const double light[3],
                         double weight[3])
 {
     const glint_rays *rays = indirect->batch.rays;
+    const bool leaves_glass = rays->term[i] == GLINT_TERM_TRANSMISSION && rays->scatters[i] == 0 && rays->depth[i] <= 2;
     double most = 0;
-    if (plan->desc.clamp == 0 || plan->indirect.is_sky || (rays == &indirect->first && !hit))
+    if (plan->desc.clamp == 0 || plan->indirect.is_sky || (!hit && (rays == &indirect->first || leaves_glass)))
         return;
     for (int c = 0; c < 3; c++)
         most = glint_larger(weight[c] * light[c] * indirect->paths[rays->point[i]], most);
