@@ -13,6 +13,10 @@
 ///           instead, or do nothing.
 /// Ownership `_create` returns a reference that the caller owns and must release with `_release`; `_retain` adds one.
 ///           `_release(NULL)` does nothing. Pointers in a description struct are borrowed for the call only.
+/// Growth    a struct that begins with `struct_size`, its sizeof, gets more fields in later versions; others do not grow.
+///           glint_X_desc_default() returns the defaults with the size; glint_X_desc_init() does it for other languages.
+///           A copy of what `_get` returns needs its own size: copy.struct_size = sizeof copy. Programs compiled with an
+///           earlier version still work: fields that they do not know have their defaults.
 /// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. Plans
 ///           and finished images are immutable. A renderer renders one frame at a time.
 #ifndef GLINT_H
@@ -26,12 +30,12 @@ extern "C" {
 #pragma GCC visibility push(default)
 
 /// The version of this header, as a text and as numbers.
-#define GLINT_VERSION "0.2.0"
+#define GLINT_VERSION "0.3.0"
 #define GLINT_VERSION_MAJOR 0
-#define GLINT_VERSION_MINOR 2
+#define GLINT_VERSION_MINOR 3
 #define GLINT_VERSION_PATCH 0
 
-/// Returns the version of the library that the program runs with, such as "0.2.0"; a static string. The library fits
+/// Returns the version of the library that the program runs with, such as "0.3.0"; a static string. The library fits
 /// this header if the first number is equal and, while it is 0, the second, too.
 const char *glint_version(void);
 
@@ -41,6 +45,7 @@ const char *glint_version(void);
 
 /// The fields of a scene, except its lists of objects. Light in linear RGB, lengths in world units.
 typedef struct glint_scene_desc {
+    size_t struct_size; ///< sizeof(glint_scene_desc)
     glint_camera *camera; ///< retained; may be NULL until a frame is planned
     double ambient[3]; ///< ambient light; finite, >= 0; default 0
     double background[3]; ///< background colour; finite, >= 0; default 0
@@ -82,6 +87,9 @@ typedef struct glint_scene_desc {
     int64_t reflection_samples;
 } glint_scene_desc;
 
+/// Writes a description with every field at its default.
+void glint_scene_desc_init(glint_scene_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(scene);
 /// Makes an empty scene without a camera. GLINT_ERR_NOMEM.
 glint_status glint_scene_create(glint_scene **out, glint_error *error);
 /// Replaces the description by a copy and retains its camera; on error nothing changes.
@@ -127,6 +135,7 @@ typedef enum glint_projection { GLINT_PROJECTION_PERSPECTIVE, GLINT_PROJECTION_O
 
 /// The fields of a camera; lengths in world units.
 typedef struct glint_camera_desc {
+    size_t struct_size; ///< sizeof(glint_camera_desc)
     glint_projection projection; ///< default GLINT_PROJECTION_PERSPECTIVE
     double eye[3]; ///< world units, finite; default {0, 0, 10}
     bool has_direction; ///< true: looks along `direction`; false: looks at the point `at`
@@ -167,8 +176,9 @@ typedef struct glint_camera_desc {
 } glint_camera_desc;
 #define GLINT_SHUTTER_TIMES_MAX 1024
 
-/// Returns a perspective camera at (0, 0, 10) that looks at the origin, with every field at its default.
-glint_camera_desc glint_camera_desc_default(void);
+/// Describes a perspective camera at (0, 0, 10) that looks at the origin, with every field at its default.
+void glint_camera_desc_init(glint_camera_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(camera);
 /// Makes a camera from a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error);
 /// Replaces the whole description by a copy of `desc`; on error nothing changes.
@@ -219,6 +229,7 @@ typedef enum glint_shadow {
 
 /// The fields of a light. Each kind reads the fields whose comment names it, and those whose comment names no kind.
 typedef struct glint_light_desc {
+    size_t struct_size; ///< sizeof(glint_light_desc)
     glint_light_kind kind; ///< kind of the light; glint_light_set cannot change it
     double color[3]; ///< default 1; finite, >= 0
     double intensity; ///< default 1; finite, >= 0; multiplies each of the three terms
@@ -262,8 +273,9 @@ typedef struct glint_light_desc {
     char name[GLINT_NAME_SIZE];
 } glint_light_desc;
 
-/// Returns a description with every field at the default for this kind.
-glint_light_desc glint_light_desc_default(glint_light_kind kind);
+/// Writes a description with every field at the default for this kind.
+void glint_light_desc_init(glint_light_desc *desc, size_t size, glint_light_kind kind);
+GLINT_DESC_DEFAULT_OF(light);
 /// Makes a light from a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error);
 /// Replaces the description by a copy; on error nothing changes. `desc->kind` must be the light's kind.
@@ -323,6 +335,7 @@ typedef struct glint_material_programs {
 
 /// The fields of a material. Reflectances are fractions of light, in linear RGB.
 typedef struct glint_material_desc {
+    size_t struct_size; ///< sizeof(glint_material_desc)
     glint_model model; ///< default phong
     bool has_ambient; ///< false: `ambient` follows `diffuse`
     double ambient[3]; ///< reflectance: finite, >= 0; above 1 the surface gives off more light than it receives
@@ -365,8 +378,9 @@ typedef struct glint_material_desc {
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
 
-/// Returns a description with every field at its default.
-glint_material_desc glint_material_desc_default(void);
+/// Writes a description with every field at its default.
+void glint_material_desc_init(glint_material_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(material);
 /// Writes `ambient`, `specular`, `f0` and `mirror` if they follow other fields, and marks them as set.
 void glint_material_desc_resolve(glint_material_desc *desc);
 /// Makes a material from a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
@@ -433,6 +447,7 @@ typedef enum glint_shading {
 /// The fields of a shape. Each kind reads the fields whose comment names it, and those whose comment names no kind.
 /// Lengths in world units.
 typedef struct glint_shape_desc {
+    size_t struct_size; ///< sizeof(glint_shape_desc)
     glint_shape_kind kind; ///< kind of the shape; glint_shape_create makes all kinds except spheres, meshes and cylinders
     /// Retained by the shape. NULL: a material with default fields; for a part of a combined solid, the solid's
     /// material; for the solid, the material of its first part that has one. A group has none
@@ -456,8 +471,9 @@ typedef struct glint_shape_desc {
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
 
-/// Returns a description with every field at the default for this kind.
-glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
+/// Writes a description with every field at the default for this kind.
+void glint_shape_desc_init(glint_shape_desc *desc, size_t size, glint_shape_kind kind);
+GLINT_DESC_DEFAULT_OF(shape);
 /// Makes a shape from a copy of `desc` and retains its material. GLINT_ERR_INVALID names the field; GLINT_ERR_NOMEM.
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
 /// Replaces the description by a copy of the same kind; on error nothing changes.
@@ -506,6 +522,7 @@ glint_shape *glint_group_child(const glint_shape *group, size_t index); ///< bor
 
 /// Many spheres in one shape, given as one array.
 typedef struct glint_spheres_desc {
+    size_t struct_size; ///< sizeof(glint_spheres_desc)
     const void *data; ///< count times x, y, z, radius; any alignment; copied
     size_t count; ///< 1 .. 2^30
     bool is_float; ///< true: `data` is binary32, false: binary64; native byte order
@@ -535,6 +552,7 @@ size_t glint_spheres_count(const glint_shape *shape);
 /// corner, or by ear clipping if the fan would leave the polygon. The front is the side from which corners run
 /// counter-clockwise.
 typedef struct glint_mesh_desc {
+    size_t struct_size; ///< sizeof(glint_mesh_desc)
     const double *vertices; ///< x, y, z of each vertex; finite; copied, like all arrays here
     size_t vertex_count; ///< number of vertices, 3 .. 2^31 - 2
     const uint32_t *corners; ///< indices of vertices, from 0, face after face
@@ -577,8 +595,9 @@ typedef struct glint_mesh_desc {
 #define GLINT_NO_NORMAL 0xffffffffu
 #define GLINT_NO_UV 0xffffffffu
 
-/// Returns the defaults: no faces, two-sided, identity transform.
-glint_mesh_desc glint_mesh_desc_default(void);
+/// Writes the defaults: no faces, two-sided, identity transform.
+void glint_mesh_desc_init(glint_mesh_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(mesh);
 /// Makes a mesh. A message names the first invalid face and vertex, counted from 1: "faces[3]: vertex 1 .. 8
 /// expected, got 9", "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle
 /// without area inside a larger face is left out.
@@ -709,6 +728,7 @@ typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLIN
 
 /// One frame: its size, samples and passes.
 typedef struct glint_render_desc {
+    size_t struct_size; ///< sizeof(glint_render_desc)
     int64_t width, height; ///< pixels, 1 .. GLINT_SIDE_MAX; default 1280 x 720
     int64_t samples; ///< samples per pixel; 1 .. 65536; default 1
     /// 0 (default): every pixel takes all samples. Above 0, at most 3: each pixel first takes one sample, at its
@@ -758,8 +778,9 @@ typedef struct glint_render_desc {
     const char *light_passes;
 } glint_render_desc;
 
-/// Returns the defaults: 1280 x 720, 1 sample, double, passes = beauty, codes = false.
-glint_render_desc glint_render_desc_default(void);
+/// Writes the defaults: 1280 x 720, 1 sample, double, passes = beauty, codes = false.
+void glint_render_desc_init(glint_render_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(render);
 
 // ---- Plan ----------------------------------------------------------------------------------------------------------
 
@@ -768,11 +789,11 @@ glint_render_desc glint_render_desc_default(void);
 /// something that has no derivative: the message then begins with "derivative 'NAME': ".
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error);
-/// Returns the description for each point in time of a frame with an open shutter: the passes that can be averaged,
-/// no pixel values.
-glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
+/// Turns the description of a frame with an open shutter into that of each point in time: the passes that can be
+/// averaged, no pixel values.
+void glint_shutter_desc(glint_render_desc *desc);
 /// Plans a frame with an open shutter. `times` are `count` plans of the scene at different times,
-/// 1 .. GLINT_SHUTTER_TIMES_MAX, made with glint_shutter_desc(desc). Light and alpha are the mean over the times.
+/// 1 .. GLINT_SHUTTER_TIMES_MAX, made with glint_shutter_desc. Light and alpha are the mean over the times.
 /// Everything else comes from `scene` as it is now: the plan's effects and stages, and depth, normal, object_id,
 /// albedo, outline and refined. If only lights differ, each such light is replaced by one light per time with its
 /// share of the strength. A derivative of the frame is the mean of the derivatives of the same name at the times; a
@@ -792,6 +813,7 @@ const char *glint_plan_light_pass(const glint_plan *plan, size_t index);
 
 /// The fields of a renderer.
 typedef struct glint_renderer_desc {
+    size_t struct_size; ///< sizeof(glint_renderer_desc)
     int threads; ///< 1 .. 1024 worker threads; 0 (default): one per processor available to the process
     /// "ref", "generic" (also "sse2"), "avx2", "avx512"; NULL: the variable GLINT_ISA, else the best
     const char *isa;
@@ -801,8 +823,9 @@ typedef struct glint_renderer_desc {
     size_t reuse_memory; ///< bytes that may be cached between frames; 0 (default): a quarter of the machine's memory
 } glint_renderer_desc;
 
-/// Returns the defaults: one thread per processor, the best instruction set, reuse within a quarter of the memory.
-glint_renderer_desc glint_renderer_desc_default(void);
+/// Writes the defaults: one thread per processor, the best instruction set, reuse within a quarter of the memory.
+void glint_renderer_desc_init(glint_renderer_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(renderer);
 /// Starts the threads. GLINT_ERR_UNSUPPORTED if the machine lacks the instruction set, GLINT_ERR_INVALID if there is
 /// none of that name.
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error);

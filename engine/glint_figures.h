@@ -92,6 +92,7 @@ const glint_curve *glint_chart_curve(const glint_chart *chart, size_t i);
 /// The fields of an overlay. Each kind reads the fields whose comment names it, and those whose comment names no
 /// kind.
 typedef struct glint_overlay_desc {
+    size_t struct_size; ///< sizeof(glint_overlay_desc)
     glint_overlay_kind kind; ///< kind of the overlay; glint_overlay_set cannot change it
     /// All kinds except axes: UTF-8, lines separated by newlines; "": none. Parts between two $ are formulas. Without a
     /// position, a label's lines that are wider than the picture are broken at blanks
@@ -176,8 +177,9 @@ typedef struct glint_overlay_desc {
     char name[GLINT_NAME_SIZE]; ///< name for messages; "": none
 } glint_overlay_desc;
 
-/// Returns a description with every field at the default for this kind.
-glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind);
+/// Writes a description with every field at the default for this kind.
+void glint_overlay_desc_init(glint_overlay_desc *desc, size_t size, glint_overlay_kind kind);
+GLINT_DESC_DEFAULT_OF(overlay);
 /// Makes an overlay from a copy of `desc`. Texts run from left to right: letters of right-to-left scripts are an
 /// error. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error);

@@ -27,6 +27,7 @@ typedef struct glint_text {
 
 /// One pass as a file. Pointers are borrowed for the call.
 typedef struct glint_write_desc {
+    size_t struct_size; ///< sizeof(glint_write_desc)
     /// Ends in .png; in .svg or .pdf for a bitmap with overlays and text as vectors, on a page of 72 / dpi points per
     /// pixel; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy, height x width or height x
     /// width x 3, top row first); or in .exr for all passes of the image, as channels of one file: R, G, B, A,
@@ -284,6 +285,7 @@ typedef struct glint_sheet_cell {
 
 /// A contact sheet. Pointers are borrowed for the call.
 typedef struct glint_sheet_desc {
+    size_t struct_size; ///< sizeof(glint_sheet_desc)
     const glint_sheet_cell *cells; ///< row by row
     size_t cell_count; ///< >= 1
     int columns; ///< >= 1

@@ -116,6 +116,7 @@ char *glint_program_listing(const glint_program *program);
 
 /// The fields of a texture.
 typedef struct glint_texture_desc {
+    size_t struct_size; ///< sizeof(glint_texture_desc)
     int width, height; ///< size of the picture, pixels: 1 .. 65535, together at most GLINT_TEXELS_MAX
     const uint8_t *rgb; ///< red, green and blue of each pixel, 8 bits each, top row first; borrowed for the call. NULL:
         ///< `row` gives the picture
@@ -127,8 +128,9 @@ typedef struct glint_texture_desc {
     bool linear; ///< true: values of `rgb` are linear. false, the default: they are sRGB and are decoded
 } glint_texture_desc;
 
-/// Returns the defaults: no picture, repeat, bilinear, sRGB.
-glint_texture_desc glint_texture_desc_default(void);
+/// Writes the defaults: no picture, repeat, bilinear, sRGB.
+void glint_texture_desc_init(glint_texture_desc *desc, size_t size);
+GLINT_DESC_DEFAULT(texture);
 /// Makes a texture; glint_texture_read of glint_files.h reads one. GLINT_ERR_INVALID names the field; GLINT_ERR_FORMAT
 /// names a pixel out of its range; GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);

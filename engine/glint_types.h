@@ -21,6 +21,25 @@ typedef enum glint_status {
     GLINT_ERR_UNSUPPORTED ///< this machine or build cannot do it
 } glint_status;
 
+/// Defines glint_NAME_desc_default(), which returns the description that glint_NAME_desc_init() writes.
+#define GLINT_DESC_DEFAULT(name) \
+    static inline glint_##name##_desc glint_##name##_desc_default(void) \
+    { \
+        glint_##name##_desc desc; \
+        glint_##name##_desc_init(&desc, sizeof desc); \
+        return desc; \
+    } \
+    typedef struct glint_##name##_desc glint_##name##_desc
+/// The same for a description of several kinds.
+#define GLINT_DESC_DEFAULT_OF(name) \
+    static inline glint_##name##_desc glint_##name##_desc_default(glint_##name##_kind kind) \
+    { \
+        glint_##name##_desc desc; \
+        glint_##name##_desc_init(&desc, sizeof desc, kind); \
+        return desc; \
+    } \
+    typedef struct glint_##name##_desc glint_##name##_desc
+
 /// Why a call failed. Written only on failure.
 typedef struct glint_error {
     glint_status status; ///< never GLINT_OK

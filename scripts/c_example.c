@@ -58,7 +58,7 @@ static glint_scene *make_scene(void)
     view.at[1] = 1;
     need(glint_camera_create(&view, &camera, &error));
     need(glint_scene_create(&scene, &error));
-    glint_scene_desc around = *glint_scene_get(scene);
+    glint_scene_desc around = glint_scene_desc_default();
     around.camera = camera;
     around.ambient[0] = around.ambient[1] = around.ambient[2] = 0.125;
     need(glint_scene_set(scene, &around, &error));
@@ -80,7 +80,7 @@ int main(void)
     glint_scene *scene = make_scene();
     glint_render_desc what = glint_render_desc_default();
     glint_renderer_desc with = glint_renderer_desc_default();
-    glint_write_desc file = { .path = "c_example.png", .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    glint_write_desc file = { .struct_size = sizeof(glint_write_desc), .path = "c_example.png", .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     glint_plan *plan;
     glint_renderer *renderer;
     glint_image *image;

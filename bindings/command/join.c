@@ -75,7 +75,7 @@ static int join(lua_State *L)
     const glintL_render *render = task->own;
     const size_t count = (size_t)luaL_len(L, 1), text_count = (size_t)luaL_len(L, 2);
     glint_error error;
-    glint_write_desc desc = {
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc),
         .path = task->options->output, .encode = render->encode, .dpi = render->dpi, .tone = render->desc.tone,
         .text = push_texts(L, text_count), .text_count = text_count,
     };

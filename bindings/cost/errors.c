@@ -74,7 +74,7 @@ static int drop_bytes(lua_State *L)
 static int png(lua_State *L)
 {
     const glint_image *image = cost_image_at(L, 1);
-    glint_write_desc desc = { .path = "picture.png",
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "picture.png",
                               .tone = cost_study_of(L)->own->desc.tone,
                               .encode = GLINT_ENCODE_SMALL };
     uint8_t **bytes = glintL_push_owner(L, sizeof *bytes, "cost.bytes", drop_bytes);

@@ -59,7 +59,8 @@ static glint_status plan_time(const cost_study *study, const cost_setting *setti
                               glint_error *error)
 {
     cost_scene *scene;
-    const glint_render_desc desc = glint_shutter_desc(&setting->render.desc);
+    glint_render_desc desc = setting->render.desc;
+    glint_shutter_desc(&desc);
     glint_status status = cost_moments_enter(study->moments, setting->shutter_times, k, &scene, error);
     if (!status)
         status = cost_setting_apply(setting, scene, error);
@@ -155,7 +156,7 @@ static double cpu_ms(void)
 
 static glint_status encode_values(const glint_image *image, glint_error *error)
 {
-    const glint_write_desc desc = { .path = "frame.pfm" };
+    const glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "frame.pfm" };
     uint8_t *data = NULL;
     size_t size;
     glint_status status = glint_image_to_bytes(image, &desc, &data, &size, error);
@@ -167,7 +168,7 @@ static glint_status encode_values(const glint_image *image, glint_error *error)
 static glint_status encode(cost_study *study, const glintL_render *render, glint_image *image, double *ms,
                            glint_error *error)
 {
-    glint_write_desc desc = { .path = "/dev/null", .tone = render->desc.tone, .encode = render->encode };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "/dev/null", .tone = render->desc.tone, .encode = render->encode };
     glint_write_result result;
     const double start = glintL_now_ms();
     glint_status status;

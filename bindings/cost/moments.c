@@ -30,6 +30,7 @@ static bool note_shapes(moment *m)
     m->shape_descs = calloc(m->scene.shape_count + 1, sizeof *m->shape_descs);
     for (size_t i = 0; i < m->scene.shape_count && m->shape_descs; i++) {
         m->shape_descs[i] = *glint_shape_get(m->scene.shapes[i]);
+        m->shape_descs[i].struct_size = sizeof m->shape_descs[i];
         if (m->shape_descs[i].material)
             glint_material_retain(m->shape_descs[i].material);
     }

@@ -95,6 +95,7 @@ bool cost_is_soft(const glint_light_desc *light)
 static glint_status edit_light(const cost_setting *setting, glint_light *light, glint_error *error)
 {
     glint_light_desc desc = *glint_light_get(light);
+    desc.struct_size = sizeof desc;
     const bool is_soft = cost_is_soft(&desc), is_sphere = desc.kind == GLINT_LIGHT_SPHERE;
     desc.shadows = desc.shadows && setting->shadows != SHADOWS_OFF;
     if (is_soft && setting->shadows == SHADOWS_HARD)
@@ -109,6 +110,7 @@ static glint_status edit_light(const cost_setting *setting, glint_light *light, 
 static glint_status edit_material(const cost_setting *setting, glint_material *material, glint_error *error)
 {
     glint_material_desc desc = *glint_material_get(material);
+    desc.struct_size = sizeof desc;
     if (desc.model != GLINT_MODEL_PHONG && desc.model != GLINT_MODEL_BLINN_PHONG)
         return GLINT_OK;
     if (setting->model == MODEL_MATCHED && desc.model == GLINT_MODEL_PHONG)
@@ -120,6 +122,7 @@ static glint_status edit_material(const cost_setting *setting, glint_material *m
 static glint_status edit_scene(const cost_setting *setting, glint_scene *scene, glint_error *error)
 {
     glint_scene_desc desc = *glint_scene_get(scene);
+    desc.struct_size = sizeof desc;
     for (int i = 0; i < COST_SCENE_NUMBERS; i++)
         if (setting->numbers[i] >= 0)
             memcpy((char *)&desc + cost_scene_numbers[i].at, &setting->numbers[i], sizeof setting->numbers[i]);

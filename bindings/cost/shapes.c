@@ -66,6 +66,7 @@ static void set_shading(glint_shape *shape, void *data)
 {
     shading_edit *edit = data;
     glint_shape_desc desc = *glint_shape_get(shape);
+    desc.struct_size = sizeof desc;
     if (edit->status || desc.kind != GLINT_SHAPE_MESH || desc.shading == edit->shading)
         return;
     cost_shaded *grown = realloc(edit->scene->shaded, (edit->scene->shaded_count + 1) * sizeof *grown);
@@ -93,6 +94,7 @@ void cost_scene_restore_meshes(cost_scene *scene)
     while (scene->shaded_count > 0) {
         const cost_shaded *was = &scene->shaded[--scene->shaded_count];
         glint_shape_desc desc = *glint_shape_get(was->shape);
+        desc.struct_size = sizeof desc;
         desc.shading = was->shading;
         glint_shape_set(was->shape, &desc, NULL); // cannot fail: it was valid before
     }

@@ -229,7 +229,7 @@ static int save(lua_State *L)
     glint_error error;
     glintL_run *run = glintL_get_run(L);
     glintL_check_object(L, 1, GLINTL_IMAGE);
-    glint_write_desc desc = { .path = check_path(L), .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = check_path(L), .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     if (!lua_isnoneornil(L, 3))
         read_options(L, &desc);
     glint_status status = glint_image_write(glintL_check_object(L, 1, GLINTL_IMAGE), &desc, &error);

@@ -17,7 +17,12 @@ static const glintL_variant *variant(const void *object)
     return &SCENE;
 }
 
-static void get(const void *object, void *desc) { memcpy(desc, glint_scene_get(object), sizeof(desc_type)); }
+static void get(const void *object, void *desc)
+{
+    desc_type *const copy = desc;
+    *copy = *glint_scene_get(object);
+    copy->struct_size = sizeof *copy;
+}
 
 static glint_status set(void *object, const void *desc, glint_error *error) { return glint_scene_set(object, desc, error); }
 
@@ -334,7 +339,7 @@ static int new_scene(lua_State *L)
 // scene also accepts this table among its objects.
 static int new_ambient_occlusion(lua_State *L)
 {
-    desc_type desc = { .has_ambient_occlusion = true };
+    desc_type desc = { .struct_size = sizeof desc, .has_ambient_occlusion = true };
     glint_scene *scene = NULL;
     glint_error error;
     lua_settop(L, 1);

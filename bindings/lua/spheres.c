@@ -114,6 +114,7 @@ static int make(lua_State *L, arguments *a, const glintL_field *fields,
     glintL_check_status(L, many->object, &error, create(&a->desc, &shape, &error));
     box->object = shape;
     glint_shape_desc placed = *glint_shape_get(shape);
+    placed.struct_size = sizeof placed;
     placed.transform = a->transform;
     placed.capped = a->capped;
     glintL_check_status(L, many->object, &error, glint_shape_set(shape, &placed, &error));
@@ -126,12 +127,12 @@ static int make(lua_State *L, arguments *a, const glintL_field *fields,
 
 int glintL_new_spheres(lua_State *L)
 {
-    arguments a = { .many = &SPHERES, .numbers = 4, .names = "x, y, z, radius" };
+    arguments a = { .desc.struct_size = sizeof a.desc, .many = &SPHERES, .numbers = 4, .names = "x, y, z, radius" };
     return make(L, &a, FIELDS + 1, glint_spheres_create);
 }
 
 int glintL_new_cylinders(lua_State *L)
 {
-    arguments a = { .many = &CYLINDERS, .numbers = 7, .names = "base, top, radius" };
+    arguments a = { .desc.struct_size = sizeof a.desc, .many = &CYLINDERS, .numbers = 7, .names = "base, top, radius" };
     return make(L, &a, FIELDS, glint_cylinders_create);
 }

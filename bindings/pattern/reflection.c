@@ -70,6 +70,7 @@ glint_status glintL_evaluate_material(const glint_material *material, const glin
     static const glint_material_programs none;
     double inputs[GLINT_INPUT_COUNT] = { 0 };
     glint_material_desc desc = *glint_material_get(material);
+    desc.struct_size = sizeof desc;
     glint_material *plain = NULL;
     glint_status status = glint_material_evaluate(material, at->normal, at->to_light, at->to_eye, out, error);
     if (status || memcmp(&desc.program, &none, sizeof none) == 0)

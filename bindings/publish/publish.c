@@ -169,7 +169,7 @@ static bool render(publication *p)
     if (!p->image)
         return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s: the script has no frame %" PRId64, p->who,
                                p->options->frame);
-    glint_write_desc desc = { .path = "poster.png", .pass = GLINT_PASS_BEAUTY, .tone = p->render.desc.tone };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "poster.png", .pass = GLINT_PASS_BEAUTY, .tone = p->render.desc.tone };
     desc.tone.bits = 8;
     if (glint_image_to_bytes(glint_image_without_overlays(p->image), &desc, &p->poster, &p->poster_size, &error) == GLINT_OK)
         return make_marks(p);

@@ -126,7 +126,7 @@ static int write_picture(lua_State *L)
     char path[GLINTL_PATH_SIZE];
     glint_error error;
     const glint_text text = { "Software", "glint " GLINT_VERSION };
-    const glint_write_desc desc = {
+    const glint_write_desc desc = { .struct_size = sizeof(glint_write_desc),
         .path = path, .pass = GLINT_PASS_BEAUTY, .tone = j->render.desc.tone, .encode = j->render.encode,
         .dpi = j->render.dpi, .text = &text, .text_count = 1,
     };
@@ -209,7 +209,7 @@ static glint_status append_pixels(lua_State *L, glint_draft *draft, const glint_
     char *text = lua_newuserdatauv(L, PIECE / 3 * 4 + 4, 0);
     uint8_t *data = NULL;
     size_t size = 0;
-    const glint_write_desc desc = { .path = "lights.exr", .pass = GLINT_PASS_LIGHT, .tone = glint_tone_desc_default() };
+    const glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "lights.exr", .pass = GLINT_PASS_LIGHT, .tone = glint_tone_desc_default() };
     glint_status status = glint_image_to_bytes(image, &desc, &data, &size, error);
     for (size_t at = 0; at < size && !status; at += PIECE) {
         const size_t piece = size - at < PIECE ? size - at : PIECE;

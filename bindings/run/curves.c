@@ -194,6 +194,7 @@ static void push_owner(lua_State *L, const char *name)
 static void update(lua_State *L, const glint_scene *scene)
 {
     glint_overlay_desc desc = *glint_overlay_get(glintL_check_object(L, -1, GLINTL_OVERLAY));
+    desc.struct_size = sizeof desc;
     glint_error error;
     desc.point_count = 0;
     if (desc.kind == GLINT_OVERLAY_LOBE) {

@@ -164,7 +164,9 @@ bool glintL_orbit_begin(const glint_scene *scene, const glintL_orbit *orbit, con
     glint_error error;
     if (!camera || !is_turned(orbit))
         return false;
-    glint_camera_desc turned = *before = *glint_camera_get(camera);
+    *before = *glint_camera_get(camera);
+    before->struct_size = sizeof *before;
+    glint_camera_desc turned = *before;
     turn_camera(scene, orbit, desc, &turned);
     return glint_camera_set(camera, &turned, &error) == GLINT_OK;
 }

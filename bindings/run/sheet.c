@@ -137,7 +137,7 @@ static int draw_sheet(lua_State *L)
         cells[i] = (glint_sheet_cell) { files[i], labels[i] };
     lua_getfield(L, 1, "transparent");
     const bool is_transparent = lua_toboolean(L, -1);
-    const glint_sheet_desc desc = {
+    const glint_sheet_desc desc = { .struct_size = sizeof(glint_sheet_desc),
         .cells = cells, .cell_count = count, .columns = (int)number_of(L, "columns"), .title = text_of(L, "title"),
         .across = text_of(L, "across"), .down = text_of(L, "down"), .column_heads = push_texts(L, "column_heads"),
         .row_heads = push_texts(L, "row_heads"), .block_heads = push_texts(L, "block_heads"),

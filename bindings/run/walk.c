@@ -249,7 +249,8 @@ static bool plan_times(glintL_walk *walk, glintL_work *work, int64_t n, const gl
                        glint_plan **plans)
 {
     glint_error error;
-    glint_render_desc desc = glint_shutter_desc(&work->render.desc);
+    glint_render_desc desc = work->render.desc;
+    glint_shutter_desc(&desc);
     glint_derivative derivatives[GLINT_DERIVATIVES_MAX];
     double share = camera->shutter;
     int times = (int)camera->shutter_times;

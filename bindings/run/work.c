@@ -82,7 +82,7 @@ void glintL_work_destroy(glintL_work *work)
 
 static glint_write_desc write_desc(const glintL_work *work, const glintL_file *file)
 {
-    glint_write_desc desc = { .path = file->path, .pass = file->pass };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = file->path, .pass = file->pass };
     desc.tone = work->render.desc.tone;
     desc.encode = work->render.encode;
     desc.dpi = work->render.dpi;

@@ -314,7 +314,12 @@ int glintL_list_fields(lua_State *L);
 
 /// Defines get, set, retain, release and create for a class whose objects have a description glint_NAME_desc.
 #define GLINTL_FUNCTIONS(name) \
-    static void get(const void *object, void *desc) { memcpy(desc, glint_##name##_get(object), sizeof(glint_##name##_desc)); } \
+    static void get(const void *object, void *desc) \
+    { \
+        glint_##name##_desc *const copy = desc; \
+        *copy = *glint_##name##_get(object); \
+        copy->struct_size = sizeof *copy; \
+    } \
     static glint_status set(void *object, const void *desc, glint_error *error) { return glint_##name##_set(object, desc, error); } \
     static void *retain(void *object) { return glint_##name##_retain(object); } \
     static void release(void *object) { glint_##name##_release(object); } \

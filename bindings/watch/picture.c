@@ -9,7 +9,7 @@
 watch_picture *watch_picture_create(const glint_image *image, const glintL_render *render, glint_error *error)
 {
     watch_picture *picture = calloc(1, sizeof *picture);
-    glint_write_desc desc = {
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc),
         .path = "watch.png", .pass = GLINT_PASS_BEAUTY, .tone = render->desc.tone, .dpi = render->dpi
     };
     desc.tone.bits = 8; // a screen shows no more

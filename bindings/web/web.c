@@ -527,7 +527,7 @@ EMSCRIPTEN_KEEPALIVE const uint8_t *web_rgba(const char *view, bool is_plain)
     const glint_image *image = is_plain ? glint_image_without_overlays(job.image) : job.image;
     glint_error error;
     const int pass = strcmp(view, "beauty") == 0 ? GLINT_PASS_BEAUTY : find_pass(view);
-    glint_write_desc desc = { .pass = (glint_pass)pass, .tone = job.render.desc.tone, .dpi = job.render.dpi };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .pass = (glint_pass)pass, .tone = job.render.desc.tone, .dpi = job.render.dpi };
     if (pass < 0) {
         glintL_run_fail(job.run, GLINTL_EXIT_USAGE, 0, "view: no pass '%s'", view);
         return NULL;
@@ -566,7 +566,7 @@ EMSCRIPTEN_KEEPALIVE const uint8_t *web_plane(const char *name, size_t *size)
 {
     glint_error error;
     const int pass = find_pass(name);
-    const glint_write_desc desc = { .path = "plane.npy", .pass = (glint_pass)pass, .tone = job.render.desc.tone };
+    const glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "plane.npy", .pass = (glint_pass)pass, .tone = job.render.desc.tone };
     free(job.bytes);
     job.bytes = NULL;
     if (pass < 0) {

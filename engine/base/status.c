@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *glint_version(void) { return GLINT_VERSION; }
 
@@ -18,6 +19,32 @@ glint_status glint_fail(glint_error *error, glint_status status, const char *for
         error->status = status;
     }
     return status;
+}
+
+#define DESC_MAX 65536 ///< bytes; larger sizes are mistakes
+
+glint_status glint_desc_read(void *full, size_t size, const void *desc, glint_error *error)
+{
+    size_t given;
+    memcpy(&given, desc, sizeof given);
+    bool good = given > sizeof given && given <= DESC_MAX;
+    for (size_t i = size; good && i < given; i++)
+        good = ((const char *)desc)[i] == 0;
+    if (!good)
+        return glint_fail(error, GLINT_ERR_INVALID, "desc.struct_size: sizeof the struct expected (%zu in this version), got %zu",
+                          size, given);
+    memcpy(full, desc, given < size ? given : size);
+    memcpy(full, &size, sizeof size);
+    return GLINT_OK;
+}
+
+void glint_desc_write(void *desc, size_t size, const void *full, size_t known)
+{
+    if (!desc || size < sizeof size)
+        return;
+    memset(desc, 0, size);
+    memcpy(desc, full, size < known ? size : known);
+    memcpy(desc, &size, sizeof size);
 }
 
 glint_status glint_fail_nomem(glint_error *error) { return glint_fail(error, GLINT_ERR_NOMEM, "out of memory"); }

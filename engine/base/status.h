@@ -15,6 +15,23 @@ glint_status glint_fail(glint_error *error, glint_status status, const char *for
             return glint_fail(error, GLINT_ERR_INVALID, #argument ": pointer expected, got NULL"); \
     } while (0)
 
+/// Copies the description of a program, which begins with its size and may be shorter or longer than the `size` bytes of
+/// the library's, over the defaults in `full`, whose own size is `size`. Refuses a size of 0, and fields that the library
+/// does not know unless they are 0.
+glint_status glint_desc_read(void *full, size_t size, const void *desc, glint_error *error);
+/// Begins a function with the parameters `given`, a description, and `error`: declares `desc`, a full copy over the
+/// defaults, and `status`, or returns an error.
+#define GLINT_TAKE_DESC(type, ...) \
+    if (!given) \
+        return glint_fail(error, GLINT_ERR_INVALID, "desc: pointer expected, got NULL"); \
+    type full = __VA_ARGS__; \
+    const type *const desc = &full; \
+    glint_status status = glint_desc_read(&full, sizeof full, given, error); \
+    if (status) \
+    return status
+/// Writes the defaults in `full`, a description of the library, to a program's of `size` bytes. desc: NULL: nothing.
+void glint_desc_write(void *desc, size_t size, const void *full, size_t known);
+
 /// Fails with "out of memory" and GLINT_ERR_NOMEM.
 glint_status glint_fail_nomem(glint_error *error);
 

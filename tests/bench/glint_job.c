@@ -6,7 +6,7 @@
 
 static glint_write_desc write_desc(const char *path, glint_encode encode)
 {
-    return (glint_write_desc) {
+    return (glint_write_desc) { .struct_size = sizeof(glint_write_desc),
         .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default(), .encode = encode
     };
 }

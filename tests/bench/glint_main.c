@@ -26,7 +26,7 @@ static void run_picture(const bench_options *options)
     glint_plan *plan = side_plan_create(&scene, options);
     glint_image *image;
     side_must(glint_render(renderer, plan, &image, NULL, &error), &error);
-    glint_write_desc d = { .path = options->out, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    glint_write_desc d = { .struct_size = sizeof(glint_write_desc), .path = options->out, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     side_must(glint_image_write(image, &d, &error), &error);
     glint_image_release(image);
     glint_plan_destroy(plan);

@@ -68,7 +68,7 @@ static void add_spheres(side_scene *s)
     glint_error error;
     glint_shape *shape;
     if (many) {
-        glint_spheres_desc d = { .data = p->spheres,
+        glint_spheres_desc d = { .struct_size = sizeof(glint_spheres_desc), .data = p->spheres,
                                  .count = many,
                                  .is_float = true,
                                  .materials = s->materials,
@@ -194,6 +194,7 @@ static void set_camera(side_scene *s, const bench_options *options)
     glint_camera *camera;
     side_must(glint_camera_create(&c, &camera, &error), &error);
     glint_scene_desc d = *glint_scene_get(s->scene);
+    d.struct_size = sizeof d;
     d.camera = camera;
     widen(s->plain.ambient, d.ambient);
     widen(s->plain.background, d.background);
@@ -251,18 +252,21 @@ void side_scene_set_frame(side_scene *s, const char *change, int frame)
     glint_error error;
     if (strcmp(change, "light") == 0) {
         glint_light_desc l = *glint_light_get(s->lamp);
+        l.struct_size = sizeof l;
         bench_job_light(frame, l.position);
         side_must(glint_light_set(s->lamp, &l, &error), &error);
         return;
     }
     if (strcmp(change, "sphere") == 0) {
         glint_shape_desc d = *glint_shape_get(s->ball);
+        d.struct_size = sizeof d;
         d.center[1] += 0.02 * (frame % 2 ? 1 : -1);
         side_must(glint_shape_set(s->ball, &d, &error), &error);
         return;
     }
     if (strcmp(change, "number") == 0) {
         glint_material_desc d = *glint_material_get(s->materials[0]);
+        d.struct_size = sizeof d;
         set_program(s, 0, 0.05 + 0.01 * frame, &d);
         side_must(glint_material_set(s->materials[0], &d, &error), &error);
         glint_program_release(d.program.diffuse);
@@ -270,6 +274,7 @@ void side_scene_set_frame(side_scene *s, const char *change, int frame)
     }
     for (int m = 0; m < s->plain.material_count; m++) {
         glint_material_desc d = *glint_material_get(s->materials[m]);
+        d.struct_size = sizeof d;
         if (d.specular[0] <= 0)
             continue;
         d.shininess = bench_job_shininess(frame);
@@ -344,7 +349,9 @@ glint_plan *side_plan_create_exposed(side_scene *s, const bench_options *options
 {
     glint_error error;
     glint_plan *plan, **times = calloc((size_t)options->times, sizeof *times);
-    const glint_render_desc d = frame_desc(options), each = glint_shutter_desc(&d);
+    const glint_render_desc d = frame_desc(options);
+    glint_render_desc each = d;
+    glint_shutter_desc(&each);
     if (!times)
         bench_fail("times", "out of memory");
     for (int k = 0; k < options->times; k++) {

@@ -52,7 +52,7 @@ static void add_lamp(glint_scene *scene)
 static void add_camera(glint_scene *scene)
 {
     glint_camera_desc view = glint_camera_desc_default();
-    glint_scene_desc desc = *glint_scene_get(scene);
+    glint_scene_desc desc = glint_scene_desc_default();
     memcpy(view.eye, (double[]) { 0, 6.2, 20.5 }, sizeof view.eye);
     memcpy(view.at, (double[]) { 0, 3.8, 0 }, sizeof view.at);
     view.fov_y_rad = 42 * (3.14159265358979323846 / 180);

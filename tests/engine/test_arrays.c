@@ -42,7 +42,7 @@ static void write_bytes(const glint_image *image, const char *path, glint_pass p
                         size_t *size)
 {
     static const glint_text texts[] = { { "Software", "glint" }, { "glint:params", "a=1\nb=2" }, { "glint:key", "" } };
-    glint_write_desc desc = { .path = path, .pass = pass, .text = texts, .text_count = 3 };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = path, .pass = pass, .text = texts, .text_count = 3 };
     desc.tone = glint_tone_desc_default();
     desc.tone.bits = bits;
     assert_int_equal(glint_image_to_bytes(image, &desc, data, size, NULL), GLINT_OK);
@@ -214,7 +214,7 @@ static void test_exr(void **state)
     size_t size;
     glint_error error;
     glint_image *image = make_planes(1u << GLINT_PASS_BEAUTY);
-    const glint_write_desc desc = { .path = "x.exr", .tone = glint_tone_desc_default() };
+    const glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = "x.exr", .tone = glint_tone_desc_default() };
     assert_int_equal(glint_image_to_bytes(image, &desc, &data, &size, &error), GLINT_ERR_UNSUPPORTED);
     assert_non_null(strstr(error.message, "OpenEXR"));
     assert_null(glint_exr_library());

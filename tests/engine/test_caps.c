@@ -33,7 +33,7 @@ static glint_image *render(const glint_scene *scene, const char *isa, int thread
                            glint_frame_stats *stats)
 {
     glint_render_desc desc = glint_render_desc_default();
-    glint_renderer_desc r = { .isa = isa, .threads = threads, .count_work = true };
+    glint_renderer_desc r = { .struct_size = sizeof(glint_renderer_desc), .isa = isa, .threads = threads, .count_work = true };
     glint_renderer *renderer;
     glint_plan *plan;
     glint_image *image;
@@ -96,6 +96,7 @@ static double share_seen(const double light[3], double light_radius, const doubl
         glint_scene *scene = make_floor(eye, at);
         glint_light *lamp = add_light(scene, light, light_radius, GLINT_SHADOW_CAPS);
         glint_light_desc d = *glint_light_get(lamp);
+        d.struct_size = sizeof d;
         add_ball(scene, ball, radius, 0);
         d.shadows = shadows;
         d.radius = shadows ? light_radius : 0;
@@ -191,6 +192,7 @@ static glint_scene *make_field(glint_shadow shadow, bool radiant)
     for (int i = 0; i < 2; i++) {
         glint_light *light = add_light(scene, i ? within : above, 0.8, shadow);
         glint_light_desc d = *glint_light_get(light);
+        d.struct_size = sizeof d;
         d.intensity = radiant ? 1 : 0.5;
         d.has_radiance = radiant;
         d.radiance = 2;
@@ -231,6 +233,7 @@ static void truth_by_samples(void **unused)
         glint_light *light =
             add_light(scene, (double[3]) { 0, 9, 0 }, 0.5, shadow ? GLINT_SHADOW_CAPS : GLINT_SHADOW_RAYS);
         glint_light_desc d = *glint_light_get(light);
+        d.struct_size = sizeof d;
         d.samples = 4096;
         d.has_radiance = true;
         d.radiance = 40;

@@ -35,6 +35,7 @@ static void random_place(double out[3])
 static void place(world *w, int i, const double at[3])
 {
     glint_shape_desc d = *glint_shape_get(w->shape[i]);
+    d.struct_size = sizeof d;
     memcpy(w->at[i], at, sizeof w->at[i]);
     if (d.kind == GLINT_SHAPE_SPHERE)
         memcpy(d.center, at, sizeof d.center);
@@ -120,6 +121,7 @@ static void make_world(world *w)
     assert_int_equal(glint_camera_create(&view, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = *glint_scene_get(w->scene);
+    s.struct_size = sizeof s;
     s.camera = w->camera;
     assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
     const bool glass = one_in(4);
@@ -190,15 +192,18 @@ static bool edit(world *w)
     } else if (kind == 1) {
         glint_light *light = w->light[below((uint32_t)w->light_count)];
         glint_light_desc d = *glint_light_get(light);
+        d.struct_size = sizeof d;
         d.position[0] += between(-1, 1);
         assert_int_equal(glint_light_set(light, &d, NULL), GLINT_OK);
     } else if (kind == 2) {
         glint_material *material = w->material[below(MATERIALS)];
         glint_material_desc d = *glint_material_get(material);
+        d.struct_size = sizeof d;
         d.shininess = between(1, 100);
         assert_int_equal(glint_material_set(material, &d, NULL), GLINT_OK);
     } else if (kind == 3) {
         glint_camera_desc d = *glint_camera_get(w->camera);
+        d.struct_size = sizeof d;
         d.eye[0] += 0.1;
         assert_int_equal(glint_camera_set(w->camera, &d, NULL), GLINT_OK);
     }

@@ -25,6 +25,7 @@ typedef struct stand {
 static void set_camera(glint_scene *scene, glint_camera *camera)
 {
     glint_scene_desc desc = *glint_scene_get(scene);
+    desc.struct_size = sizeof desc;
     desc.camera = camera;
     assert_int_equal(glint_scene_set(scene, &desc, NULL), GLINT_OK);
 }
@@ -125,6 +126,7 @@ static glint_shape *add_ball(glint_scene *scene, double x, double y, double z, d
 static void move(glint_shape *ball, double x, double y, double z)
 {
     glint_shape_desc desc = *glint_shape_get(ball);
+    desc.struct_size = sizeof desc;
     desc.center[0] = x;
     desc.center[1] = y;
     desc.center[2] = z;
@@ -134,6 +136,7 @@ static void move(glint_shape *ball, double x, double y, double z)
 static void paint(glint_material *material, double red)
 {
     glint_material_desc desc = *glint_material_get(material);
+    desc.struct_size = sizeof desc;
     desc.diffuse[0] = red;
     assert_int_equal(glint_material_set(material, &desc, NULL), GLINT_OK);
 }
@@ -328,6 +331,7 @@ static void shares_in_another_order(void **unused)
     glint_light *light;
     glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_SPHERE);
     glint_camera_desc view = *glint_camera_get(s.camera);
+    view.struct_size = sizeof view;
     view.eye[2] = 0;
     view.has_direction = true;
     view.direction[0] = view.direction[2] = 0;
@@ -361,6 +365,7 @@ static void shares_in_another_order(void **unused)
 static void look_from_above(stand *s)
 {
     glint_camera_desc desc = *glint_camera_get(s->camera);
+    desc.struct_size = sizeof desc;
     desc.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     desc.height = 6;
     assert_int_equal(glint_camera_set(s->camera, &desc, NULL), GLINT_OK);

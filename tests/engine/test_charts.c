@@ -196,6 +196,7 @@ static void test_kept(void **state)
     glint_chart_release(desc.chart);
     assert_string_equal(glint_chart_curve(glint_overlay_get(overlay)->chart, 0)->label, "a");
     desc = *glint_overlay_get(overlay);
+    desc.struct_size = sizeof desc;
     assert_int_equal(glint_overlay_set(overlay, &desc, &error), GLINT_OK); // the same chart again
     curve.y = y;
     assert_int_equal(glint_chart_create(&curve, 1, &desc.chart, &error), GLINT_OK);

@@ -468,6 +468,7 @@ static glint_material *random_material(void)
 static void dress(glint_shape *shape)
 {
     glint_shape_desc d = *glint_shape_get(shape);
+    d.struct_size = sizeof d;
     if (one_in(2) && d.kind != GLINT_SHAPE_GROUP) {
         d.material = random_material();
         d.two_sided = !one_in(4);
@@ -513,7 +514,7 @@ static glint_scene *lit_scene(bool floor, bool many)
     }
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
-    glint_scene_desc desc = { .camera = camera, .ambient = { 0.1, 0.1, 0.1 }, .background = { 0.2, 0.3, 0.4 } };
+    glint_scene_desc desc = { .struct_size = sizeof(glint_scene_desc), .camera = camera, .ambient = { 0.1, 0.1, 0.1 }, .background = { 0.2, 0.3, 0.4 } };
     desc.has_indirect = one_in(6);
     desc.indirect_samples = 2;
     desc.indirect_bounces = 1;
@@ -543,7 +544,7 @@ static glint_image *render(const glint_scene *scene, const char *isa, int thread
     glint_renderer *renderer;
     glint_plan *plan;
     glint_image *image;
-    glint_renderer_desc r = { .threads = threads, .isa = isa };
+    glint_renderer_desc r = { .struct_size = sizeof(glint_renderer_desc), .threads = threads, .isa = isa };
     glint_render_desc d = glint_render_desc_default();
     glint_error error;
     d.width = d.height = 48;
@@ -818,6 +819,7 @@ static glint_shape *block(double x0, double x1, double y0, double y1, double z0,
 static void turn(glint_shape *shape, bool turned)
 {
     glint_shape_desc d = *glint_shape_get(shape);
+    d.struct_size = sizeof d;
     if (turned)
         d.transform = random_map(3);
     assert_int_equal(glint_shape_set(shape, &d, NULL), GLINT_OK);

@@ -130,6 +130,7 @@ static made make_scene(bool striped)
     OK(glint_camera_create(&view, &camera, &error));
     OK(glint_scene_create(&m.scene, &error));
     glint_scene_desc around = *glint_scene_get(m.scene);
+    around.struct_size = sizeof around;
     around.camera = camera;
     grey(around.ambient, 0.1);
     memcpy(around.background, (const double[]) { 0, 0.1, 20.0 / 100 }, sizeof around.background);
@@ -173,7 +174,7 @@ static void write_pictures(const made *m, const char *name, const glint_derivati
     OK(glint_render(renderer, plan, &image, NULL, &error));
     for (size_t i = 0; i < count; i++) {
         char path[64];
-        glint_write_desc file = { .path = path, .pass = (glint_pass)(GLINT_PASS_DERIVATIVE + i), .tone = glint_tone_desc_default() };
+        glint_write_desc file = { .struct_size = sizeof(glint_write_desc), .path = path, .pass = (glint_pass)(GLINT_PASS_DERIVATIVE + i), .tone = glint_tone_desc_default() };
         snprintf(path, sizeof path, "c_%s.d_%s.pfm", name, derivatives[i].name);
         OK(glint_image_write(image, &file, &error));
     }

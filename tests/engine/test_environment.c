@@ -41,8 +41,8 @@ static world new_world(bool no_reuse)
     glint_material_desc material = glint_material_desc_default();
     glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_POINT);
     glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
-    const glint_renderer_desc renderer = { .threads = 2, .count_work = true, .no_reuse = no_reuse };
-    glint_scene_desc scene = { .ambient = { 0.5, 0.5, 0.5 } };
+    const glint_renderer_desc renderer = { .struct_size = sizeof(glint_renderer_desc), .threads = 2, .count_work = true, .no_reuse = no_reuse };
+    glint_scene_desc scene = { .struct_size = sizeof(glint_scene_desc), .ambient = { 0.5, 0.5, 0.5 } };
     glint_shape *shape;
     OK(glint_camera_create(&camera, &scene.camera, &error));
     OK(glint_material_create(&material, &w.material, &error));
@@ -72,6 +72,7 @@ static void release_world(world *w)
 static glint_status set_background(world *w, glint_program *program)
 {
     glint_scene_desc desc = *glint_scene_get(w->scene);
+    desc.struct_size = sizeof desc;
     desc.background_program = program;
     const glint_status status = glint_scene_set(w->scene, &desc, &error);
     glint_program_release(program);
@@ -119,6 +120,7 @@ static void test_counts(void **state)
     assert_true(missing > WIDTH * HEIGHT / 2 && missing < WIDTH * HEIGHT);
     assert_true(share_reused(&w.stats, "environment") == 0 && w.stats.odd[GLINT_ODD_NEGATIVE].count == 0);
     glint_material_desc mirror = *glint_material_get(w.material);
+    mirror.struct_size = sizeof mirror;
     mirror.has_mirror = true;
     mirror.mirror[0] = mirror.mirror[1] = mirror.mirror[2] = 0.5;
     OK(glint_material_set(w.material, &mirror, &error));
@@ -147,6 +149,7 @@ static void test_reuse(void **state)
     assert_true(share_reused(&w.stats, "cast") == 1 && share_reused(&w.stats, "light") == 1);
     assert_true(share_reused(&w.stats, "environment") < 0.5);
     glint_light_desc lamp = *glint_light_get(w.lamp);
+    lamp.struct_size = sizeof lamp;
     lamp.position[0] += 1;
     OK(glint_light_set(w.lamp, &lamp, &error));
     assert_true(render(&w, 0, 0) == corner);
@@ -178,6 +181,7 @@ static void test_refused(void **state)
     assert_string_equal(error.message, "background: a pattern expected, got a shader");
     OK(set_background(&w, gradient(0.5, 0.25)));
     glint_scene_desc desc = *glint_scene_get(w.scene);
+    desc.struct_size = sizeof desc;
     desc.has_depth_cue = true;
     desc.depth_cue_far = 9;
     assert_int_equal(glint_scene_set(w.scene, &desc, &error), GLINT_ERR_INVALID);
@@ -208,6 +212,7 @@ static void test_material_numbers(void **state)
     (void)state;
     world w = new_world(true);
     glint_material_desc plain = *glint_material_get(w.material), desc = plain;
+    plain.struct_size = sizeof plain;
     desc.program.diffuse = constant(GLINT_PROGRAM_PATTERN, 0.5);
     OK(glint_material_set(w.material, &desc, &error));
     assert_true(!glint_material_get(w.material)->program.diffuse && glint_material_get(w.material)->diffuse[1] == 0.5);

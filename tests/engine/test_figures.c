@@ -288,7 +288,7 @@ static void test_sheet(void **state)
     const glint_sheet_cell cells[] = { { write_plain("a.png", 50, 30, 1), "a = 1" },
                                        { write_plain("b.png", 50, 30, 0.5f), "a = 2\nlong = 1234567890" },
                                        { write_plain("c.png", 50, 30, 0), NULL } };
-    glint_sheet_desc desc = { .cells = cells, .cell_count = 3, .columns = 2, .difference = 1, .gain = 0.5 };
+    glint_sheet_desc desc = { .struct_size = sizeof(glint_sheet_desc), .cells = cells, .cell_count = 3, .columns = 2, .difference = 1, .gain = 0.5 };
     if (glint_sheet_write(&desc, in_folder("sheet.png"), &error))
         fail_msg("%s", error.message);
     glint_png png = decode_ok(in_folder("sheet.png"));
@@ -321,7 +321,7 @@ static void test_sheet_heads(void **state)
     glint_error error;
     for (int i = 0; i < 8; i++)
         cells[i] = (glint_sheet_cell) { path, NULL };
-    glint_sheet_desc desc = { .cells = cells, .cell_count = 8, .columns = 2, .column_heads = columns, .row_heads = rows,
+    glint_sheet_desc desc = { .struct_size = sizeof(glint_sheet_desc), .cells = cells, .cell_count = 8, .columns = 2, .column_heads = columns, .row_heads = rows,
                               .block_heads = blocks, .block_rows = 2 };
     assert_int_equal(glint_sheet_write(&desc, in_folder("sheet.png"), &error), GLINT_OK);
     glint_png png = decode_ok(in_folder("sheet.png"));
@@ -345,7 +345,7 @@ static void test_sheet_heads(void **state)
     assert_string_equal(error.message, "block_rows: whole number 1 .. 65535 expected, got 0");
     char name[1002] = "";
     memset(name, 'n', 1001);
-    desc = (glint_sheet_desc) { .cells = cells, .cell_count = 1, .columns = 1, .down = name };
+    desc = (glint_sheet_desc) { .struct_size = sizeof(glint_sheet_desc), .cells = cells, .cell_count = 1, .columns = 1, .down = name };
     assert_int_equal(glint_sheet_write(&desc, in_folder("none.png"), &error), GLINT_ERR_INVALID);
     assert_non_null(strstr(error.message, "down: a name of at most 1000 bytes expected"));
 }
@@ -357,7 +357,7 @@ static void test_sheet_bar(void **state)
     (void)state;
     const glint_sheet_cell cells[] = { { write_plain("a.png", 20, 300, 1), NULL }, { write_plain("b.png", 20, 300, 0), NULL } };
     glint_overlay_desc bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
-    const glint_sheet_desc desc = { .cells = cells, .cell_count = 2, .columns = 2, .gain = 1, .colorbar = &bar };
+    const glint_sheet_desc desc = { .struct_size = sizeof(glint_sheet_desc), .cells = cells, .cell_count = 2, .columns = 2, .gain = 1, .colorbar = &bar };
     const uint32_t *table = glint_colormap_table(GLINT_COLORMAP_TURBO);
     bar.map = GLINT_COLORMAP_TURBO;
     bar.has_length = true;
@@ -398,7 +398,7 @@ static void test_sheet_refuses(void **state)
     (void)state;
     glint_error error = { 0 };
     glint_sheet_cell cells[] = { { write_plain("a.png", 20, 10, 1), NULL }, { write_plain("b.png", 20, 11, 1), NULL } };
-    glint_sheet_desc desc = { .cells = cells, .cell_count = 2, .columns = 2, .gain = 1 };
+    glint_sheet_desc desc = { .struct_size = sizeof(glint_sheet_desc), .cells = cells, .cell_count = 2, .columns = 2, .gain = 1 };
     const char *path = in_folder("sheet.png");
     assert_int_equal(glint_sheet_write(&desc, path, &error), GLINT_ERR_INVALID);
     assert_non_null(strstr(error.message, "b.png: 20x10 pixels"));

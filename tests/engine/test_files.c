@@ -390,14 +390,14 @@ static void test_writer_reuse(void **state)
     glint_image *image = make_image(1000, 500, &tone);
     for (size_t i = 0; i < glint_image_stamps(image); i++)
         image->row_stamp[i] = i + 1;
-    write_ok(image, &(glint_write_desc){.path = in_folder("want.png"), .tone = tone});
+    write_ok(image, &(glint_write_desc) { .struct_size = sizeof(glint_write_desc), .path = in_folder("want.png"), .tone = tone});
     glint_bytes want = read_ok(in_folder("want.png"));
     for (int threads = 1; threads <= 3; threads++) {
         glint_writer *writer;
         assert_int_equal(glint_writer_create(1, threads, &writer, NULL), GLINT_OK);
         for (int i = 0; i < 3; i++) {
             glint_write_result result;
-            glint_write_desc desc = {.path = in_folder("got.png"), .tone = tone};
+            glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = in_folder("got.png"), .tone = tone};
             assert_int_equal(glint_writer_submit(writer, image, &desc, NULL, NULL), GLINT_OK);
             assert_true(glint_writer_collect(writer, true, &result));
             assert_int_equal(result.status, GLINT_OK);

@@ -100,7 +100,7 @@ static void aim(glint_scene *scene, double reach)
     place(0.5 * reach, l.position);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
     assert_int_equal(glint_light_create(&l, &light, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .camera = camera }, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .struct_size = sizeof(glint_scene_desc), .camera = camera }, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_light(scene, light, NULL), GLINT_OK);
     glint_camera_release(camera);
     glint_light_release(light);

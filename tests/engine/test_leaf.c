@@ -103,7 +103,7 @@ static glint_scene *lit_scene(const place *at, const double eye[3], const double
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
     assert_int_equal(glint_light_create(&l, &lamp, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .camera = camera }, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .struct_size = sizeof(glint_scene_desc), .camera = camera }, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_light(scene, lamp, NULL), GLINT_OK);
     glint_camera_release(camera);
     glint_light_release(lamp);

@@ -124,7 +124,7 @@ static glint_scene *scene_of(glint_shape *shape, const double eye[3], const doub
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
     assert_int_equal(glint_light_create(&l, &lamp, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .camera = camera }, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .struct_size = sizeof(glint_scene_desc), .camera = camera }, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_light(scene, lamp, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
     glint_camera_release(camera);
@@ -138,7 +138,7 @@ static bool is_lit(const glint_scene *scene)
     glint_renderer *renderer;
     glint_plan *plan;
     glint_image *image;
-    glint_renderer_desc r = { .threads = 1 };
+    glint_renderer_desc r = { .struct_size = sizeof(glint_renderer_desc), .threads = 1 };
     glint_render_desc d = glint_render_desc_default();
     float p[3];
     d.width = d.height = 1;
@@ -266,8 +266,9 @@ static void leaving_within(void **unused)
         const double eye[3] = { 0, cone ? 2 : 4.5, 0 }, at[3] = { 1, cone ? 2 : 3.5, 0 };
         glint_scene *scene = scene_of(shape, eye, at, (double[3]) { 0, 50, 0 });
         glint_scene_desc s = *glint_scene_get(scene);
+        s.struct_size = sizeof s;
         glint_render_desc r = glint_render_desc_default();
-        glint_renderer_desc desc = { .threads = 1 };
+        glint_renderer_desc desc = { .struct_size = sizeof(glint_renderer_desc), .threads = 1 };
         glint_renderer *renderer;
         glint_plan *plan;
         glint_image *image;

@@ -25,12 +25,13 @@ static world make_world(const glint_overlay_desc *desc, double background)
     glint_renderer_desc renderer = glint_renderer_desc_default();
     glint_camera_desc view = glint_camera_desc_default();
     glint_camera *camera = NULL;
-    glint_scene_desc scene = { .background = { background, background, background } };
+    glint_scene_desc scene = { .struct_size = sizeof(glint_scene_desc), .background = { background, background, background } };
     renderer.threads = 2;
     w.render.width = WIDTH;
     w.render.height = HEIGHT;
     w.render.passes = 0;
     w.render.codes = true;
+    w.write.struct_size = sizeof w.write;
     w.write.pass = GLINT_PASS_BEAUTY;
     assert_int_equal(glint_camera_create(&view, &camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w.scene, NULL), GLINT_OK);
@@ -418,7 +419,7 @@ static void test_page(void **state)
     assert_non_null(strstr(large, "<rect x=\"42\" y=\"26\""));
     assert_non_null(strstr(small, "font-size=\"13\"")); // the bitmap font has no 10 pixels
     assert_non_null(strstr(large, "font-size=\"26\""));
-    const glint_write_desc plain = { .pass = GLINT_PASS_BEAUTY, .tone = w.render.tone };
+    const glint_write_desc plain = { .struct_size = sizeof(glint_write_desc), .pass = GLINT_PASS_BEAUTY, .tone = w.render.tone };
     assert_int_equal(glint_image_rgba(glint_image_without_overlays(image), &plain, rgba, &error), GLINT_OK);
     for (size_t i = 0; i < sizeof rgba; i++)
         assert_int_equal(rgba[i], 255);

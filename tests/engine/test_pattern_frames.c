@@ -50,6 +50,7 @@ static world new_world(const double eye[3], const double at[3], int width, int h
     OK(glint_camera_create(&camera, &made, &error));
     OK(glint_scene_create(&w.scene, &error));
     glint_scene_desc desc = *glint_scene_get(w.scene);
+    desc.struct_size = sizeof desc;
     desc.camera = made;
     desc.reflection_samples = 2;
     OK(glint_scene_set(w.scene, &desc, &error));
@@ -78,7 +79,7 @@ static void add_shape(world *w, glint_shape_desc *desc, glint_material *material
 
 static glint_image *render(const world *w, const char *isa, int threads)
 {
-    glint_renderer_desc desc = { .isa = isa, .threads = threads, .no_reuse = true };
+    glint_renderer_desc desc = { .struct_size = sizeof(glint_renderer_desc), .isa = isa, .threads = threads, .no_reuse = true };
     glint_renderer *renderer;
     glint_plan *plan;
     glint_image *image;
@@ -332,6 +333,7 @@ static world random_world(void)
     for (int i = 0; i < 4; i++)
         glint_material_release(materials[i]);
     glint_scene_desc desc = *glint_scene_get(w.scene);
+    desc.struct_size = sizeof desc;
     desc.ambient[0] = desc.ambient[1] = desc.ambient[2] = 0.1;
     desc.background[2] = 0.3;
     desc.has_indirect = below(5) == 0;
@@ -562,6 +564,7 @@ enum { WAVES = 8 };
 static void set_waves(glint_material *material, const wave waves[WAVES])
 {
     glint_material_desc desc = *glint_material_get(material);
+    desc.struct_size = sizeof desc;
     glint_program **const programs[WAVES] = { &desc.program.diffuse,      &desc.program.specular,  &desc.program.mirror,
                                               &desc.program.shininess,    &desc.program.roughness, &desc.program.bump,
                                               &desc.program.transmission, &desc.program.opacity };
@@ -587,8 +590,10 @@ static void edit(uint32_t turn, wave waves[WAVES], glint_material *material, wor
     wave *v = &waves[turn / 4 % WAVES];
     glint_shape *ball = glint_scene_shape_at(w->scene, 1);
     glint_shape_desc desc = *glint_shape_get(ball);
+    desc.struct_size = sizeof desc;
     glint_light *light = glint_scene_light_at(w->scene, 0);
     glint_light_desc lamp = *glint_light_get(light);
+    lamp.struct_size = sizeof lamp;
     const double axis[3] = { 0, 1, 0 };
     switch (turn % 4) {
     case 0:
@@ -636,7 +641,7 @@ static void test_reuse(void **state)
         set_waves(material, waves);
         w.render.samples = round == 3 ? 4 : 1;
         w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
-        glint_renderer_desc options = { .threads = 2 };
+        glint_renderer_desc options = { .struct_size = sizeof(glint_renderer_desc), .threads = 2 };
         glint_renderer *renderer;
         OK(glint_renderer_create(&options, &renderer, &error));
         for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn += case_step()) {
@@ -667,7 +672,7 @@ static void test_reuse_uv(void **state)
     desc.program.diffuse = end_program(&u, 1);
     mesh.material = new_material(&desc);
     glint_program_release(desc.program.diffuse);
-    glint_renderer_desc options = { .threads = 2 };
+    glint_renderer_desc options = { .struct_size = sizeof(glint_renderer_desc), .threads = 2 };
     glint_renderer *renderer;
     OK(glint_renderer_create(&options, &renderer, &error));
     glint_image *before = NULL;
@@ -707,7 +712,7 @@ static void test_odd(void **state)
     glint_program_release(desc.program.diffuse);
     glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
     add_shape(&w, &floor, material);
-    glint_renderer_desc options = { .threads = 2, .no_reuse = true };
+    glint_renderer_desc options = { .struct_size = sizeof(glint_renderer_desc), .threads = 2, .no_reuse = true };
     glint_renderer *renderer;
     glint_frame_stats stats;
     OK(glint_renderer_create(&options, &renderer, &error));
@@ -756,7 +761,7 @@ static void test_stages(void **state)
     add_shape(&w, &floor, material);
     glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_POINT);
     glint_light *light;
-    glint_renderer_desc options = { .threads = 1 };
+    glint_renderer_desc options = { .struct_size = sizeof(glint_renderer_desc), .threads = 1 };
     glint_renderer *renderer;
     glint_frame_stats stats;
     lamp.position[1] = 5;

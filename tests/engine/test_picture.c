@@ -38,7 +38,7 @@ static void make_world(world *w, double mirror)
     static const double red[3] = { 0.8, 0.2, 0.1 }, blue[3] = { 0.1, 0.2, 0.9 };
     glint_camera_desc view = glint_camera_desc_default();
     glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_POINT);
-    glint_scene_desc desc = { .ambient = { 0.1, 0.1, 0.2 }, .background = { 1.5, 0.5, 0.25 } };
+    glint_scene_desc desc = { .struct_size = sizeof(glint_scene_desc), .ambient = { 0.1, 0.1, 0.2 }, .background = { 1.5, 0.5, 0.25 } };
     glint_renderer_desc how = glint_renderer_desc_default();
     glint_light *light = NULL;
     glint_shape *shapes[2] = { ball(-1, 0, 1.5, red, 0), ball(1.5, -2, 2, blue, mirror) };
@@ -296,7 +296,7 @@ static glint_image *outline_of(glint_shape *shape, double height)
 {
     world w;
     glint_camera_desc view = glint_camera_desc_default();
-    glint_scene_desc desc = { 0 };
+    glint_scene_desc desc = { .struct_size = sizeof(glint_scene_desc) };
     glint_renderer_desc how = glint_renderer_desc_default();
     view.projection = GLINT_PROJECTION_ORTHOGRAPHIC;
     view.height = height;

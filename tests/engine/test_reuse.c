@@ -282,6 +282,7 @@ static void table_names_all(const char *what, const field *fields, size_t count,
 {
     char *named = calloc(1, size);
     assert_non_null(named);
+    memset(named, 1, sizeof(size_t)); // struct_size
     for (size_t i = 0; i < count; i++)
         memset(named + fields[i].offset, 1, fields[i].size);
     for (size_t from = 0, to; from < size; from = to + 1) {
@@ -311,6 +312,7 @@ static void edit_material(world *w)
 {
     glint_material *material = w->materials[draw(SHAPES)];
     glint_material_desc d = *glint_material_get(material);
+    d.struct_size = sizeof d;
     set_field(pick(material_table.of, material_table.count), &d);
     glint_material_set(material, &d, NULL);
 }
@@ -321,6 +323,7 @@ static void edit_light(world *w)
 {
     uint32_t i = draw(LIGHTS);
     glint_light_desc d = *glint_light_get(w->lights[i]);
+    d.struct_size = sizeof d;
     if (draw(8) == 0) {
         if (w->shining[i])
             glint_scene_remove_light(w->scene, w->lights[i], NULL);
@@ -347,6 +350,7 @@ static void edit_shape(world *w)
     if (glint_group_count(shape) && draw(2)) // sometimes edits a child of the group instead
         shape = glint_group_child(shape, draw((uint32_t)glint_group_count(shape)));
     glint_shape_desc d = *glint_shape_get(shape);
+    d.struct_size = sizeof d;
     if (draw(6) == 0) {
         if (w->in_scene[i])
             glint_scene_remove_shape(w->scene, w->shapes[i], NULL);
@@ -376,7 +380,9 @@ static void keep_focus(glint_camera_desc *c)
 static void edit_frame(world *w)
 {
     glint_camera_desc c = *glint_camera_get(w->camera);
+    c.struct_size = sizeof c;
     glint_scene_desc s = *glint_scene_get(w->scene);
+    s.struct_size = sizeof s;
     switch (draw(3)) {
     case 0:
         set_field(pick(camera_table.of, camera_table.count), &c);
@@ -473,7 +479,7 @@ static void make_world(world *w)
     c.w = c.h = 40; // w and h must be set together
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
-    glint_scene_desc s = {
+    glint_scene_desc s = { .struct_size = sizeof(glint_scene_desc),
         .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 }, .indirect_samples = 2, .indirect_bounces = 2,
         .ambient_occlusion_samples = 2, .ambient_occlusion_distance = 3, .reflection_samples = 2
     };
@@ -737,6 +743,7 @@ static void a_lamp_that_reaches_nothing(void **unused)
         glint_plan *plan;
         glint_image *a, *b;
         glint_material_desc paint = *glint_material_get(w.materials[1]);
+        paint.struct_size = sizeof paint;
         paint.diffuse[0] = frame / 12.0; // the colour of some tiles changes, the others stay the same
         glint_material_set(w.materials[1], &paint, NULL);
         if (both)
@@ -767,8 +774,11 @@ static void a_lamp_that_reaches_nothing(void **unused)
 static void go_back(world *w)
 {
     glint_material_desc paint = *glint_material_get(w->materials[1]);
+    paint.struct_size = sizeof paint;
     glint_shape_desc place = *glint_shape_get(w->shapes[4]);
+    place.struct_size = sizeof place;
     glint_light_desc lamp = *glint_light_get(w->lights[0]);
+    lamp.struct_size = sizeof lamp;
     for (uint32_t left = 1 + draw(2); left > 0; left--) {
         const uint32_t what = draw(5), value = draw(2);
         if (what == 4) {
@@ -858,6 +868,7 @@ static void sweep_shininess(double adaptive)
     place.material = paint;
     assert_int_equal(glint_shape_create(&place, &ball, NULL), GLINT_OK);
     glint_scene_desc whole = *glint_scene_get(scene);
+    whole.struct_size = sizeof whole;
     whole.camera = camera;
     assert_int_equal(glint_scene_set(scene, &whole, NULL), GLINT_OK);
     glint_scene_add_shape(scene, ball, NULL);
@@ -921,6 +932,7 @@ static void move_the_light(double adaptive, bool is_eager, int frames, glint_fra
         glint_renderer_cache_hits(both[0]);
     for (int frame = 0; frame < frames; frame++) {
         glint_light_desc lamp = *glint_light_get(w.lights[0]);
+        lamp.struct_size = sizeof lamp;
         lamp.position[0] = lamp.direction[0] = 0.01 * frame;
         assert_int_equal(glint_light_set(w.lights[0], &lamp, NULL), GLINT_OK);
         render_both(&w, both, stats, frame);

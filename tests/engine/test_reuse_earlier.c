@@ -56,6 +56,7 @@ static void make_stand(stand *s, size_t memory)
     assert_int_equal(glint_shape_create(&ball, &s->ball, NULL), GLINT_OK);
     assert_int_equal(glint_shape_create(&floor, &s->floor, NULL), GLINT_OK);
     glint_scene_desc whole = *glint_scene_get(s->scene);
+    whole.struct_size = sizeof whole;
     whole.camera = s->camera;
     assert_int_equal(glint_scene_set(s->scene, &whole, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_shape(s->scene, s->ball, NULL), GLINT_OK);
@@ -101,6 +102,7 @@ static void free_stand(stand *s)
 static void set_lamp(const stand *s, int lamp, double x)
 {
     glint_light_desc light = *glint_light_get(s->lights[lamp]);
+    light.struct_size = sizeof light;
     light.position[0] = x;
     assert_int_equal(glint_light_set(s->lights[lamp], &light, NULL), GLINT_OK);
 }
@@ -108,6 +110,7 @@ static void set_lamp(const stand *s, int lamp, double x)
 static void set_eye(const stand *s, double x)
 {
     glint_camera_desc view = *glint_camera_get(s->camera);
+    view.struct_size = sizeof view;
     view.eye[0] = x;
     assert_int_equal(glint_camera_set(s->camera, &view, NULL), GLINT_OK);
 }
@@ -115,6 +118,7 @@ static void set_eye(const stand *s, double x)
 static void set_color(const stand *s, double red)
 {
     glint_material_desc look = *glint_material_get(s->paint);
+    look.struct_size = sizeof look;
     look.diffuse[0] = red;
     assert_int_equal(glint_material_set(s->paint, &look, NULL), GLINT_OK);
 }
@@ -122,6 +126,7 @@ static void set_color(const stand *s, double red)
 static void set_ball(const stand *s, double x)
 {
     glint_shape_desc place = *glint_shape_get(s->ball);
+    place.struct_size = sizeof place;
     place.center[0] = x;
     assert_int_equal(glint_shape_set(s->ball, &place, NULL), GLINT_OK);
 }

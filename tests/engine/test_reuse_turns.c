@@ -41,6 +41,7 @@ static void make_stand(stand *s, int lights)
     mesh.material = s->paint;
     assert_int_equal(glint_sphere_mesh_create(middle, 1, 40, &mesh, &s->ball, NULL), GLINT_OK);
     glint_scene_desc whole = *glint_scene_get(s->scene);
+    whole.struct_size = sizeof whole;
     whole.camera = s->camera;
     assert_int_equal(glint_scene_set(s->scene, &whole, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_shape(s->scene, s->ball, NULL), GLINT_OK);
@@ -97,6 +98,7 @@ static double check(const stand *s)
 static double turn_light(stand *s)
 {
     glint_light_desc light = *glint_light_get(s->lights[0]);
+    light.struct_size = sizeof light;
     light.direction[0] += 0.25;
     assert_int_equal(glint_light_set(s->lights[0], &light, NULL), GLINT_OK);
     return check(s);
@@ -141,12 +143,14 @@ static void a_light_beyond_those_cached(void **state)
     make_stand(&s, LIGHTS);
     double last = check(&s);
     glint_light_desc light = *glint_light_get(s.lights[LIGHTS - 1]);
+    light.struct_size = sizeof light;
     light.diffuse[0] = 0.5;
     light.has_diffuse = true;
     assert_int_equal(glint_light_set(s.lights[LIGHTS - 1], &light, NULL), GLINT_OK);
     assert_true(check(&s) < last);
     last = check(&s);
     glint_material_desc look = *glint_material_get(s.paint);
+    look.struct_size = sizeof look;
     look.shininess = 500; // only the highlight shrinks
     assert_int_equal(glint_material_set(s.paint, &look, NULL), GLINT_OK);
     assert_true(check(&s) < last);
@@ -161,6 +165,7 @@ static void a_background_alone(void **state)
     double last = check(&s);
     for (int i = 0; i < 3; i++) {
         glint_scene_desc whole = *glint_scene_get(s.scene);
+        whole.struct_size = sizeof whole;
         whole.background[0] += 0.25;
         assert_int_equal(glint_scene_set(s.scene, &whole, NULL), GLINT_OK);
         const double sum = check(&s);

@@ -154,7 +154,7 @@ static glint_scene *random_scene(uint64_t seed)
     const double scale = below(4) ? 1 : pow(10, between(-6, 6)), far = below(5) ? 0 : pow(10, between(0, 4));
     const double offset[3] = { far * scale, -far * scale, 2 * far * scale };
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
-    glint_scene_desc s = { .camera = make_camera(scale, offset), .ambient = { 0.4, 0.4, 0.4 }, .background = { 0.1 } };
+    glint_scene_desc s = { .struct_size = sizeof(glint_scene_desc), .camera = make_camera(scale, offset), .ambient = { 0.4, 0.4, 0.4 }, .background = { 0.1 } };
     assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
     glint_camera_release(s.camera);
     if (below(2))
@@ -295,6 +295,7 @@ static void in_turn(void **unused)
         for (int frame = 0; frame < 6; frame++) {
             glint_light *light = glint_scene_light_at(scene, 0);
             glint_light_desc l = *glint_light_get(light);
+            l.struct_size = sizeof l;
             l.shadows = below(2);
             l.intensity = between(0.5, 1);
             assert_int_equal(glint_light_set(light, &l, NULL), GLINT_OK);
@@ -334,7 +335,7 @@ static void only_triangles(void **unused)
         glint_scene *scene;
         random_state = 5;
         assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
-        glint_scene_desc s = { .camera = make_camera(1, offset) };
+        glint_scene_desc s = { .struct_size = sizeof(glint_scene_desc), .camera = make_camera(1, offset) };
         assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
         glint_camera_release(s.camera);
         glint_shape *sphere;

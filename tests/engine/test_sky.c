@@ -39,7 +39,7 @@ static glint_program *texel(int width, int height, int x, int y, glint_filter fi
     assert_non_null(rgb);
     for (int c = 0; c < 3; c++)
         rgb[3 * (y * width + x) + c] = 255;
-    const glint_texture_desc desc = { .rgb = rgb, .width = width, .height = height, .wrap = GLINT_WRAP_AROUND, .filter = filter };
+    const glint_texture_desc desc = { .struct_size = sizeof(glint_texture_desc), .rgb = rgb, .width = width, .height = height, .wrap = GLINT_WRAP_AROUND, .filter = filter };
     OK(glint_texture_create(&desc, &texture, &error));
     begin_program(GLINT_PROGRAM_PATTERN);
     OK(glint_builder_texel(builder, texture, in(GLINT_INPUT_UV_U), in(GLINT_INPUT_UV_V), num(0), color, &error));
@@ -59,7 +59,7 @@ static glint_plan *plan_of(glint_program *sky, bool indirect)
     glint_camera_desc camera = glint_camera_desc_default();
     glint_material_desc matt = glint_material_desc_default();
     glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
-    glint_scene_desc desc = { .background_program = sky, .has_indirect = indirect, .indirect_samples = 4, .indirect_bounces = 1 };
+    glint_scene_desc desc = { .struct_size = sizeof(glint_scene_desc), .background_program = sky, .has_indirect = indirect, .indirect_samples = 4, .indirect_bounces = 1 };
     const glint_render_desc render = glint_render_desc_default();
     OK(glint_camera_create(&camera, &desc.camera, &error));
     OK(glint_material_create(&matt, &material, &error));

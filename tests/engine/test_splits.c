@@ -262,6 +262,7 @@ static recipe random_field(bool one) { return one_in(4) ? any_field(one) : usual
 static void set_programs(dressed *d)
 {
     glint_material_desc desc = *glint_material_get(d->material);
+    desc.struct_size = sizeof desc;
     glint_program **const at[FIELDS] = { &desc.program.diffuse,   &desc.program.specular, &desc.program.shininess,
                                          &desc.program.roughness, &desc.program.mirror,   &desc.program.bump,
                                          &desc.program.opacity };
@@ -306,6 +307,7 @@ static void aim(world *w, double x)
 {
     glint_camera_desc desc = glint_camera_desc_default();
     glint_scene_desc scene = *glint_scene_get(w->scene);
+    scene.struct_size = sizeof scene;
     const double eye[3] = { x, 3, 7 };
     glint_camera *camera;
     memcpy(desc.eye, eye, sizeof eye);
@@ -330,6 +332,7 @@ static void random_world(world *w)
     OK(glint_light_create(&light, &w->light, &error));
     OK(glint_scene_add_light(w->scene, w->light, &error));
     glint_scene_desc scene = *glint_scene_get(w->scene);
+    scene.struct_size = sizeof scene;
     scene.ambient[0] = scene.ambient[1] = scene.ambient[2] = 0.1;
     scene.has_indirect = one_in(6);
     scene.indirect_samples = scene.indirect_bounces = scene.reflection_samples = 1;
@@ -371,6 +374,7 @@ static void change(world *w, uint32_t *knob)
         aim(w, between(-1, 1));
     if (kind == 1) {
         glint_light_desc light = *glint_light_get(w->light);
+        light.struct_size = sizeof light;
         light.position[0] += 0.5;
         OK(glint_light_set(w->light, &light, &error));
     }
@@ -419,7 +423,7 @@ static long kept_tiles(const glint_renderer *renderer)
 
 static glint_renderer *new_renderer(const char *isa, bool fresh)
 {
-    glint_renderer_desc desc = { .isa = isa, .threads = 1 + (int)below(3), .no_reuse = fresh };
+    glint_renderer_desc desc = { .struct_size = sizeof(glint_renderer_desc), .isa = isa, .threads = 1 + (int)below(3), .no_reuse = fresh };
     glint_renderer *renderer;
     if (!fresh && one_in(4))
         desc.reuse_memory = 20000 + below(400000); // only part of the cached values fits
@@ -493,7 +497,7 @@ static void test_turns(void **state)
     };
     world w;
     recipe *r = board_world(&w);
-    glint_renderer_desc desc = { .threads = 2 };
+    glint_renderer_desc desc = { .struct_size = sizeof(glint_renderer_desc), .threads = 2 };
     glint_renderer *keeping, *fresh = new_renderer(NULL, true);
     OK(glint_renderer_create(&desc, &keeping, &error));
     for (uint32_t i = 0; i < COUNT_OF(turns); i++) {
@@ -523,11 +527,12 @@ static void test_normalized(void **state)
     world w;
     recipe *field = board_world(&w);
     glint_material_desc desc = *glint_material_get(w.of[0].material);
+    desc.struct_size = sizeof desc;
     desc.model = GLINT_MODEL_PHONG;
     desc.normalized = true;
     OK(glint_material_set(w.of[0].material, &desc, &error));
     field[1] = field[2] = field[0];
-    glint_renderer_desc options = { .threads = 1 };
+    glint_renderer_desc options = { .struct_size = sizeof(glint_renderer_desc), .threads = 1 };
     glint_renderer *keeping, *fresh = new_renderer(NULL, true);
     OK(glint_renderer_create(&options, &keeping, &error));
     for (uint32_t i = 0; i < 8; i++) {

@@ -163,7 +163,7 @@ static glint_scene *new_scene(const double eye[3], const double at[3], double fo
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
     assert_int_equal(glint_light_create(&l, &lamp, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .camera = camera }, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .struct_size = sizeof(glint_scene_desc), .camera = camera }, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_light(scene, lamp, NULL), GLINT_OK);
     glint_camera_release(camera);
     glint_light_release(lamp);
@@ -181,7 +181,7 @@ static glint_image *render(const glint_scene *scene, const char *isa, int thread
     glint_renderer *renderer;
     glint_plan *plan;
     glint_image *image;
-    glint_renderer_desc r = { .threads = threads, .isa = isa };
+    glint_renderer_desc r = { .struct_size = sizeof(glint_renderer_desc), .threads = threads, .isa = isa };
     glint_render_desc d = glint_render_desc_default();
     glint_error error;
     d.width = d.height = size;
@@ -702,6 +702,7 @@ static void groups_hold_together(void **unused)
     add(scene, a);
     assert_int_equal(glint_scene_add_shape(scene, b, NULL), GLINT_OK);
     d = *glint_shape_get(b);
+    d.struct_size = sizeof d;
     d.transform = glint_transform_translate((double[3]) { 5, 0, 0 });
     assert_int_equal(glint_shape_set(b, &d, NULL), GLINT_OK);
     for (int step = 0; step < 2; step++) {
@@ -711,6 +712,7 @@ static void groups_hold_together(void **unused)
                          GLINT_OK);
         assert_true(any && hit.shape == ball && hit.t == (step ? 7 : 8));
         d = *glint_shape_get(ball);
+        d.struct_size = sizeof d;
         d.radius = 2;
         assert_int_equal(glint_shape_set(ball, &d, NULL), GLINT_OK);
     }

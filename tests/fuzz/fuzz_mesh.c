@@ -21,6 +21,7 @@ static void see(glint_shape *shape)
     FUZZ_CHECK(!glint_camera_create(&c, &camera, &error), "%s", error.message);
     FUZZ_CHECK(!glint_scene_create(&scene, &error), "%s", error.message);
     glint_scene_desc s = *glint_scene_get(scene);
+    s.struct_size = sizeof s;
     s.camera = camera;
     FUZZ_CHECK(!glint_scene_set(scene, &s, &error), "%s", error.message);
     FUZZ_CHECK(!glint_scene_add_shape(scene, shape, &error), "%s", error.message);

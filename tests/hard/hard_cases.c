@@ -33,7 +33,7 @@ static bool requested_as_spheres(const hard_ray *ray, const hard_sphere *sphere,
     glint_shape *shape;
     glint_hit hit;
     const double row[4] = { sphere->c[0], sphere->c[1], sphere->c[2], sphere->r };
-    const glint_spheres_desc desc = { .data = row, .count = 1, .two_sided = true };
+    const glint_spheres_desc desc = { .struct_size = sizeof(glint_spheres_desc), .data = row, .count = 1, .two_sided = true };
     glint_scene *scene = scene_new();
     must(glint_spheres_create(&desc, &shape, &error), &error);
     must(glint_scene_add_shape(scene, shape, &error), &error);

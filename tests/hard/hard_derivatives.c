@@ -300,6 +300,7 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
     scene_light_up(scene, 0, background);
     scene_camera(scene, &camera);
     glint_scene_desc d = *glint_scene_get(scene);
+    d.struct_size = sizeof d;
     put(d.ambient, w->scene_ambient, 3);
     must(glint_scene_set(scene, &d, &error), &error);
     shapes[0] = add_shape(w, scene, sphere);

@@ -189,6 +189,7 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
     camera.projection = w->orthographic ? GLINT_PROJECTION_ORTHOGRAPHIC : GLINT_PROJECTION_PERSPECTIVE;
     scene_camera(scene, &camera);
     glint_scene_desc d = *glint_scene_get(scene);
+    d.struct_size = sizeof d;
     put(d.ambient, w->ambient, 3);
     put(d.background, w->background, 3);
     d.has_depth_cue = d.has_depth_cue_color = w->fades;

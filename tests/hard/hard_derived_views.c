@@ -173,6 +173,7 @@ static void set_scene(const world *w, glint_scene *scene)
 {
     glint_error error;
     glint_scene_desc d = *glint_scene_get(scene);
+    d.struct_size = sizeof d;
     put(d.ambient, w->ambient, 3);
     put(d.background, w->background, 3);
     d.has_depth_cue = w->cue;

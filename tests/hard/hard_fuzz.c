@@ -129,7 +129,7 @@ static void add_many(glint_scene *scene, const hard_sphere *spheres, int count, 
         rows[4 * i + 3] = spheres[i].r;
     }
     glint_error error;
-    const glint_spheres_desc desc = { .data = rows, .count = (size_t)count, .two_sided = true };
+    const glint_spheres_desc desc = { .struct_size = sizeof(glint_spheres_desc), .data = rows, .count = (size_t)count, .two_sided = true };
     must(glint_spheres_create(&desc, &shapes[0], &error), &error);
     must(glint_scene_add_shape(scene, shapes[0], &error), &error);
     glint_shape_release(shapes[0]);

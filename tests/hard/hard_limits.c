@@ -222,7 +222,7 @@ static void check_written(void)
     const frame_desc desc = { 1, 1, GLINT_PRECISION_DOUBLE, COLOR_PASSES, 1, NULL };
     glint_image *image = frame(scene, &desc, NULL);
     temporary_file(path, ".pfm");
-    glint_write_desc write = { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    glint_write_desc write = { .struct_size = sizeof(glint_write_desc), .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     must(glint_image_write(image, &write, &error), &error);
     FILE *file = fopen(path, "rb");
     float values[3] = { 0 };
@@ -281,7 +281,7 @@ static const char *const size_names[] = { [GLINT_SHAPE_SPHERE] = "sphere 'mite'"
 /// may miss the object.
 static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, const char *name, const char *refused)
 {
-    const glint_render_desc desc = { .width = 1, .height = 1, .samples = 1, .passes = 1u << GLINT_PASS_OBJECT_ID,
+    const glint_render_desc desc = { .struct_size = sizeof(glint_render_desc), .width = 1, .height = 1, .samples = 1, .passes = 1u << GLINT_PASS_OBJECT_ID,
                                      .tone = glint_tone_desc_default() };
     glint_camera_desc camera = glint_camera_desc_default();
     glint_error error;
@@ -461,7 +461,7 @@ static void check_crowd(int count)
         glint_error error;
         glint_shape *shape;
         glint_hit hit;
-        const glint_spheres_desc desc = { .data = rows, .count = (size_t)count, .two_sided = true };
+        const glint_spheres_desc desc = { .struct_size = sizeof(glint_spheres_desc), .data = rows, .count = (size_t)count, .two_sided = true };
         glint_scene *scene = scene_new();
         must(glint_spheres_create(&desc, &shape, &error), &error);
         must(glint_scene_add_shape(scene, shape, &error), &error);

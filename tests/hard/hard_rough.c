@@ -61,6 +61,7 @@ static double seen(glint_material *material, const double n[3], const double v[3
     glint_scene *scene = scene_new();
     scene_light_up(scene, 0, white);
     glint_scene_desc desc = *glint_scene_get(scene);
+    desc.struct_size = sizeof desc;
     desc.reflection_samples = RAYS;
     must(glint_scene_set(scene, &desc, &error), &error);
     glint_material *dark = material_new(GLINT_MODEL_LAMBERT, black, 0, 1);

@@ -175,6 +175,7 @@ static void leaving_seams(uint64_t rays)
         glint_material *mirror = point_glass(0, 1, 0, 1.5, false), *glass = point_glass(0, 0, 1, 1.5, false),
                        *dim = point_glass(0, 0, 1, 1, false);
         glint_material_desc desc = *glint_material_get(dim);
+        desc.struct_size = sizeof desc;
         for (int c = 0; c < 3; c++)
             desc.absorption[c] = 1 / size;
         must(glint_material_set(dim, &desc, &error), &error);

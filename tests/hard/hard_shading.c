@@ -282,6 +282,7 @@ static glint_image *row_of(const double *values, int count)
         const hard_sphere ball = { { i + 0.5 - 0.5 * count, 0, 0 }, 0.4 };
         glint_material *material = material_new(GLINT_MODEL_LAMBERT, one, 0, 1);
         glint_material_desc desc = *glint_material_get(material);
+        desc.struct_size = sizeof desc;
         glint_error error;
         for (int c = 0; c < 3; c++)
             desc.diffuse[c] = values[i];
@@ -301,7 +302,7 @@ static void written_codes(const glint_image *image, glint_transfer transfer, int
     char path[64];
     const int width = glint_image_width(image);
     glint_error error;
-    glint_write_desc desc = { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    glint_write_desc desc = { .struct_size = sizeof(glint_write_desc), .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     desc.tone.transfer = transfer;
     desc.tone.bits = bits;
     temporary_file(path, ".png");

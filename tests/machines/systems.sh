@@ -68,13 +68,13 @@ lua=lua5.4
 system macos arm64-apple-darwin23.1.0 $lua
 everywhere
 check "macos: generic kernels" test "$(kernels)" = "generic "
-check "macos: the library's name" has libglint.0.2.0.dylib '-dynamiclib -Wl,-install_name,/opt/glint/lib/libglint\.0\.2\.dylib'
-check "macos: links to it" links libglint.0.2.0.dylib libglint.dylib libglint.0.2.dylib
+check "macos: the library's name" has libglint.0.3.0.dylib '-dynamiclib -Wl,-install_name,/opt/glint/lib/libglint\.0\.3\.dylib'
+check "macos: links to it" links libglint.0.3.0.dylib libglint.dylib libglint.0.3.dylib
 check "macos: a bundle" has glint.so '-bundle -undefined dynamic_lookup'
 check "macos: nothing of ELF" eval '! grep -E -- "-soname|-z,|version-script|as-needed|-Wl,-E|-ldl|-shared" "$calls"'
 check "macos: what is exported, by Apple's names" eval 'test "$(grep -c "^_glint_[a-z0-9_]*$" "$work/macos.build/libglint.map")" -gt 100 &&
     ! grep -v "^_glint_" "$work/macos.build/libglint.map"'
-check "macos: strip knows these" eval '[ "$(grep -c "^strip -S -x .*/\(glint\|glint.so\|libglint.0.2.0.dylib\)$" "$calls")" = 3 ] &&
+check "macos: strip knows these" eval '[ "$(grep -c "^strip -S -x .*/\(glint\|glint.so\|libglint.0.3.0.dylib\)$" "$calls")" = 3 ] &&
     grep -q "^strip -S .*/libglint.a$" "$calls" && ! grep "^strip.* --" "$calls"'
 system macos_intel x86_64-apple-darwin22.6.0 $lua
 check "macos: on Intel's processors all kernels" test "$(kernels | wc -w)" = 3
@@ -84,8 +84,8 @@ for row in "freebsd x86_64-unknown-freebsd14.0 lua-5.4" "openbsd amd64-unknown-o
     system "$name" "$machine" "$lua"
     everywhere
     check "$name: the kernels of x86-64" test "$(kernels)" = "avx2 avx512 generic "
-    check "$name: a shared library of ELF" has libglint.so.0.2.0 '-shared -Wl,-soname,libglint\.so\.0\.2 +-Wl,--version-script'
-    check "$name: links to it" links libglint.so.0.2.0 libglint.so libglint.so.0.2
+    check "$name: a shared library of ELF" has libglint.so.0.3.0 '-shared -Wl,-soname,libglint\.so\.0\.3 +-Wl,--version-script'
+    check "$name: links to it" links libglint.so.0.3.0 libglint.so libglint.so.0.3
     check "$name: no libdl, which Linux has" eval '! grep -- "-ldl" "$calls"'
     check "$name: relro and now" has glint '-Wl,-z,relro -Wl,-z,now'
 done

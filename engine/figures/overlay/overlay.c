@@ -21,7 +21,7 @@ typedef struct described {
 const char *const glint_overlay_kinds[] = { "label", "colorbar", "axes", "arrow", "line", "arc",
                                            "polyline", "lobe", "path", "frustum", "chart" };
 
-glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
+static glint_overlay_desc defaults(glint_overlay_kind kind)
 {
     glint_overlay_desc desc = { .kind = kind, .color = { 1, 1, 1 }, .opacity = 1, .high = 1, .names = { "x", "y", "z" },
                                 .depth = 4, .aspect = 16.0 / 9 };
@@ -41,6 +41,12 @@ glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
         desc.background[i] = 1;
     }
     return desc;
+}
+
+void glint_overlay_desc_init(glint_overlay_desc *desc, size_t size, glint_overlay_kind kind)
+{
+    const glint_overlay_desc full = defaults(kind);
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 /// Returns whether a letter is written from right to left: Hebrew, Arabic, Syriac, Thaana, N'Ko and related scripts.
@@ -360,11 +366,11 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
     return status;
 }
 
-glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error)
+glint_status glint_overlay_create(const glint_overlay_desc *given, glint_overlay **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    glint_status status = check(desc, error);
+    GLINT_TAKE_DESC(glint_overlay_desc, defaults(given->kind));
+    status = check(desc, error);
     if (status)
         return status;
     described *overlay = malloc(sizeof *overlay);
@@ -376,14 +382,14 @@ glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay 
     return GLINT_OK;
 }
 
-glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error)
+glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(overlay, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_overlay_desc, defaults(given->kind));
     glint_overlay_desc *own = &((described *)overlay)->desc;
     if (desc->kind != own->kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: an overlay cannot become one of another kind");
-    glint_status status = check(desc, error);
+    status = check(desc, error);
     if (status)
         return status;
     glint_chart_retain(desc->chart);

@@ -290,13 +290,14 @@ static glint_status check_bonds(const glint_bonds_desc *desc, glint_error *error
 static glint_status make_cylinders(const joining *j, glint_shape **out, glint_error *error)
 {
     const glint_bonds_desc *desc = j->desc;
-    const glint_spheres_desc cylinders = { .data = j->items, .count = j->count, .materials = desc->materials,
+    const glint_spheres_desc cylinders = { .struct_size = sizeof(glint_spheres_desc), .data = j->items, .count = j->count, .materials = desc->materials,
                                            .material_count = desc->material_count, .material_index = j->index, .two_sided = true };
     glint_shape *shape = NULL;
     glint_status status = glint_cylinders_create(&cylinders, &shape, error);
     if (status)
         return status;
     glint_shape_desc open = *glint_shape_get(shape);
+    open.struct_size = sizeof open;
     open.capped = false;
     status = glint_shape_set(shape, &open, error);
     if (status)

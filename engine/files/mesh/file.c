@@ -94,6 +94,7 @@ static bool has_bad_vertices(const glint_mesh_reader *r)
 static glint_status make_mesh(glint_mesh_reader *r, glint_shape **out)
 {
     glint_mesh_desc mesh = *r->desc;
+    mesh.struct_size = sizeof mesh;
     glint_error inner;
     glint_mesh_faults faults = { 0 };
     mesh.vertices = r->vertices.items;
@@ -244,11 +245,11 @@ static reading reader_of(const glint_mesh_text *text)
                                                                                 : glint_mesh_read_obj;
 }
 
-glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
+glint_status glint_mesh_load(const char *path, const glint_mesh_desc *given, glint_shape **out, glint_error *error)
 {
     GLINT_REFUSE_NULL(path, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_mesh_desc, glint_mesh_desc_default());
     glint_mesh_reader r = { .desc = desc, .error = error };
     r.vertices.size = r.normals.size = r.numbers_of_colors.size = 3 * sizeof(double);
     r.uv.size = 2 * sizeof(double);
@@ -258,7 +259,7 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
         sizeof(uint32_t);
     if (desc->reads)
         desc->reads(desc->context, path);
-    glint_status status = glint_mesh_text_open(&r.text, path, error);
+    status = glint_mesh_text_open(&r.text, path, error);
     if (!status)
         status = refuse_foreign(&r);
     if (!status)

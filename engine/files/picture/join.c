@@ -86,13 +86,13 @@ static glint_status write_canvas(const canvas *from, const glint_picture *first,
 }
 
 glint_status glint_picture_join(const glint_picture_part *parts, size_t count, int width, int height,
-                                const glint_write_desc *desc, glint_error *error)
+                                const glint_write_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(parts, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_write_desc, { 0 });
     if (!count)
         return glint_fail(error, GLINT_ERR_INVALID, "parts: one or more expected");
-    glint_status status = glint_check_whole("width", width, 1, GLINT_SIDE_MAX, error);
+    status = glint_check_whole("width", width, 1, GLINT_SIDE_MAX, error);
     if (!status)
         status = glint_check_whole("height", height, 1, GLINT_SIDE_MAX, error);
     if (status)

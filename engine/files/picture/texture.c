@@ -124,6 +124,7 @@ static void decode_codes(void *context, int y, float *to)
 static glint_status make(picture *from, const glint_texture_desc *how, glint_texture **out, glint_error *error)
 {
     glint_texture_desc desc = *how;
+    desc.struct_size = sizeof desc;
     const bool is_float = from->floats.values;
     desc.width = is_float ? from->floats.width : from->png.width;
     desc.height = is_float ? from->floats.height : from->png.height;
@@ -134,15 +135,15 @@ static glint_status make(picture *from, const glint_texture_desc *how, glint_tex
     return is_float || from->light ? glint_texture_create(&desc, out, error) : glint_fail_nomem(error);
 }
 
-glint_status glint_texture_read(const char *path, const glint_texture_desc *desc, glint_texture **out, glint_error *error)
+glint_status glint_texture_read(const char *path, const glint_texture_desc *given, glint_texture **out, glint_error *error)
 {
     GLINT_REFUSE_NULL(path, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_texture_desc, glint_texture_desc_default());
     picture from = { .linear = desc->linear };
     glint_bytes bytes = { 0 };
     glint_error inner;
-    glint_status status = glint_file_read_picture(path, &bytes, error);
+    status = glint_file_read_picture(path, &bytes, error);
     if (status)
         return status;
     status = decode(&bytes, &from, &inner);

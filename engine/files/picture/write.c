@@ -445,11 +445,11 @@ static void copy_rgba(const glint_png_source *source, const uint8_t *row, uint8_
     }
 }
 
-glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *desc, uint8_t *out, glint_error *error)
+glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *given, uint8_t *out, glint_error *error)
 {
     GLINT_REFUSE_NULL(image, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_write_desc, { 0 });
     code_rows rows;
     if (desc->tone.bits != 8)
         return glint_fail(error, GLINT_ERR_INVALID, "tone.bits: 8 expected, got %d", desc->tone.bits);
@@ -457,7 +457,7 @@ glint_status glint_image_rgba(const glint_image *image, const glint_write_desc *
         return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
                           (int)desc->pass);
     const size_t stride = 4 * (size_t)image->width;
-    glint_status status = open_rows(image, desc, &rows, error);
+    status = open_rows(image, desc, &rows, error);
     uint8_t *scratch = malloc(stride);
     for (int y = 0; y < image->height && !status && scratch; y++)
         copy_rgba(&rows.source, rows.source.row(rows.source.user, y, scratch), out + (size_t)y * stride);
@@ -502,27 +502,27 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
     return done ? GLINT_OK : glint_fail_nomem(error);
 }
 
-glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)
+glint_status glint_image_write(const glint_image *image, const glint_write_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(image, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_write_desc, { 0 });
     glint_bytes bytes = { 0 };
-    glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
+    status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
     if (!status)
         status = glint_file_write(desc->path, bytes.data, bytes.size, error);
     free(bytes.data);
     return status;
 }
 
-glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
+glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *given, uint8_t **data, size_t *size,
                                   glint_error *error)
 {
     GLINT_REFUSE_NULL(image, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(data, error);
     GLINT_REFUSE_NULL(size, error);
+    GLINT_TAKE_DESC(glint_write_desc, { 0 });
     glint_bytes bytes = { 0 };
-    glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
+    status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
     if (status) {
         free(bytes.data);
         return status;

@@ -316,12 +316,12 @@ static job *make_job(const glint_write_desc *desc)
     return j;
 }
 
-glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
+glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *given, void *user,
                                  glint_error *error)
 {
     GLINT_REFUSE_NULL(writer, error);
     GLINT_REFUSE_NULL(image, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_write_desc, { 0 });
     job *j = make_job(desc);
     if (!j)
         return glint_fail_nomem(error);

@@ -242,13 +242,13 @@ static glint_status draw_sheet(glint_sheet_layout *l, const char *path, glint_er
     return status;
 }
 
-glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error)
+glint_status glint_sheet_write(const glint_sheet_desc *given, const char *path, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(path, error);
+    GLINT_TAKE_DESC(glint_sheet_desc, { 0 });
     glint_picture *first = NULL;
     glint_sheet_layout l = { .desc = desc };
-    glint_status status = glint_sheet_check(desc, path, error);
+    status = glint_sheet_check(desc, path, error);
     if (!status)
         status = glint_picture_read(desc->cells[0].path, false, &first, error);
     if (!status)

@@ -15,12 +15,18 @@ typedef struct frame {
     glint_extent extent;
 } frame;
 
-glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
+static glint_renderer_desc defaults(void) { return (glint_renderer_desc) { 0 }; }
 
-glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
+void glint_renderer_desc_init(glint_renderer_desc *desc, size_t size)
 {
-    GLINT_REFUSE_NULL(desc, error);
+    const glint_renderer_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
+}
+
+glint_status glint_renderer_create(const glint_renderer_desc *given, glint_renderer **out, glint_error *error)
+{
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_renderer_desc, defaults());
     glint_renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer)
         return glint_fail_nomem(error);
@@ -31,7 +37,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
     glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
-    glint_status status = glint_choose_isa(desc->isa, &renderer->stages, error);
+    status = glint_choose_isa(desc->isa, &renderer->stages, error);
     const int threads = desc->threads ? desc->threads : glint_pool_processors();
     if (!status)
         status = glint_pool_create(threads, &renderer->pool, error);

@@ -21,7 +21,7 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
     return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this machine lacks '%s'", who, requested);
 }
 
-glint_render_desc glint_render_desc_default(void)
+static glint_render_desc defaults(void)
 {
     return (glint_render_desc) { .width = 1280,
                                  .height = 720,
@@ -29,6 +29,12 @@ glint_render_desc glint_render_desc_default(void)
                                  .max_depth = 5,
                                  .passes = 1u << GLINT_PASS_BEAUTY,
                                  .tone = glint_tone_desc_default() };
+}
+
+void glint_render_desc_init(glint_render_desc *desc, size_t size)
+{
+    const glint_render_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 static glint_status check_region(const glint_render_desc *desc, glint_error *error)
@@ -231,12 +237,12 @@ glint_status glint_plan_make(const glint_plan_input *from, glint_plan **out, gli
     return GLINT_OK;
 }
 
-glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
+glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *given, glint_plan **out,
                                glint_error *error)
 {
     GLINT_REFUSE_NULL(scene, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_render_desc, defaults());
     return glint_plan_make(&(glint_plan_input) { .scene = scene, .desc = desc }, out, error);
 }
 

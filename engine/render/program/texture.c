@@ -19,7 +19,13 @@ struct glint_texture {
     _Atomic uint32_t references;
 };
 
-glint_texture_desc glint_texture_desc_default(void) { return (glint_texture_desc) { .wrap = GLINT_WRAP_REPEAT }; }
+static glint_texture_desc defaults(void) { return (glint_texture_desc) { .wrap = GLINT_WRAP_REPEAT }; }
+
+void glint_texture_desc_init(glint_texture_desc *desc, size_t size)
+{
+    const glint_texture_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
+}
 
 glint_texture *glint_texture_retain(glint_texture *texture)
 {
@@ -149,11 +155,11 @@ static glint_status check(const glint_texture_desc *desc, glint_error *error)
     return GLINT_OK;
 }
 
-glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error)
+glint_status glint_texture_create(const glint_texture_desc *given, glint_texture **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    glint_status status = check(desc, error);
+    GLINT_TAKE_DESC(glint_texture_desc, defaults());
+    status = check(desc, error);
     if (status)
         return status;
     glint_texture *texture = calloc(1, sizeof *texture);

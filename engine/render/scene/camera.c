@@ -69,11 +69,17 @@ const glint_object_field glint_camera_fields[] = {
 };
 _Static_assert(offsetof(DESC, has_focus_point) == offsetof(DESC, focus) + sizeof(double), "GLINT_TYPE_DISTANCE");
 
-glint_camera_desc glint_camera_desc_default(void)
+static glint_camera_desc defaults(void)
 {
     glint_camera_desc desc = { .has_direction = false };
     glint_fields_reset(glint_camera_fields, &desc);
     return desc;
+}
+
+void glint_camera_desc_init(glint_camera_desc *desc, size_t size)
+{
+    const glint_camera_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 // ---- Checks of several fields ----
@@ -128,11 +134,11 @@ static glint_status check(const glint_camera_desc *desc, glint_error *error)
 
 // ---- The object ----
 
-glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error)
+glint_status glint_camera_create(const glint_camera_desc *given, glint_camera **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    glint_status status = check(desc, error);
+    GLINT_TAKE_DESC(glint_camera_desc, defaults());
+    status = check(desc, error);
     if (status)
         return status;
     glint_camera *camera = malloc(sizeof *camera);
@@ -143,11 +149,11 @@ glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **o
     return GLINT_OK;
 }
 
-glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error)
+glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(camera, error);
-    GLINT_REFUSE_NULL(desc, error);
-    glint_status status = check(desc, error);
+    GLINT_TAKE_DESC(glint_camera_desc, defaults());
+    status = check(desc, error);
     if (!status)
         camera->desc = *desc;
     return status;

@@ -116,12 +116,18 @@ const glint_object_field *const glint_light_fields[] = {
     [GLINT_LIGHT_DISK] = disk_fields,   [GLINT_LIGHT_POLYGON] = polygon_fields,         [GLINT_LIGHT_SPHERE] = sphere_fields,
 };
 
-glint_light_desc glint_light_desc_default(glint_light_kind kind)
+static glint_light_desc defaults(glint_light_kind kind)
 {
     glint_light_desc desc = { .kind = kind };
     for (int k = GLINT_LIGHT_POINT; k <= GLINT_LIGHT_SPHERE; k++)
         glint_fields_reset(glint_light_fields[k], &desc);
     return desc;
+}
+
+void glint_light_desc_init(glint_light_desc *desc, size_t size, glint_light_kind kind)
+{
+    const glint_light_desc full = defaults(kind);
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 static bool has_area(glint_light_kind kind)
@@ -199,13 +205,13 @@ static glint_status take(glint_light *light, const glint_light_desc *desc, glint
     return GLINT_OK;
 }
 
-glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error)
+glint_status glint_light_create(const glint_light_desc *given, glint_light **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_light_desc, defaults(given->kind));
     if (desc->kind > GLINT_LIGHT_SPHERE)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: no such kind of light");
-    glint_status status = check(desc, error);
+    status = check(desc, error);
     if (status)
         return status;
     glint_light *light = calloc(1, sizeof *light);
@@ -220,13 +226,13 @@ glint_status glint_light_create(const glint_light_desc *desc, glint_light **out,
     return status;
 }
 
-glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, glint_error *error)
+glint_status glint_light_set(glint_light *light, const glint_light_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(light, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_light_desc, defaults(given->kind));
     if (desc->kind != light->desc.kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: a light cannot become one of another kind");
-    glint_status status = check(desc, error);
+    status = check(desc, error);
     return status ? status : take(light, desc, error);
 }
 

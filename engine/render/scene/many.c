@@ -118,16 +118,16 @@ static glint_status begin(const glint_shape_desc *base, glint_material *const *l
     return GLINT_OK;
 }
 
-static glint_status create(glint_shape_kind kind, const glint_spheres_desc *desc, glint_shape **out,
+static glint_status create(glint_shape_kind kind, const glint_spheres_desc *given, glint_shape **out,
                            glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_spheres_desc, { .two_sided = true });
     glint_shape_desc base = glint_shape_desc_default(kind);
     glint_shape *shape = NULL;
     base.two_sided = desc->two_sided;
     memcpy(base.name, desc->name, sizeof base.name);
-    glint_status status = begin(&base, desc->materials, desc->material_count, &shape, error);
+    status = begin(&base, desc->materials, desc->material_count, &shape, error);
     if (!status)
         status = fill(shape, desc, error);
     if (status)

@@ -71,11 +71,17 @@ const glint_object_field glint_material_fields[] = {
     { .name = NULL },
 };
 
-glint_material_desc glint_material_desc_default(void)
+static glint_material_desc defaults(void)
 {
     glint_material_desc desc = { .has_ambient = false };
     glint_fields_reset(glint_material_fields, &desc);
     return desc;
+}
+
+void glint_material_desc_init(glint_material_desc *desc, size_t size)
+{
+    const glint_material_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 // ---- Programs ----
@@ -179,12 +185,12 @@ static glint_status take(const glint_material_desc *desc, glint_material_desc *o
     return status ? status : glint_check_color("specular", out->specular, error);
 }
 
-glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error)
+glint_status glint_material_create(const glint_material_desc *given, glint_material **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_material_desc, defaults());
     glint_material_desc taken;
-    glint_status status = take(desc, &taken, error);
+    status = take(desc, &taken, error);
     if (status)
         return status;
     glint_material *material = malloc(sizeof *material);
@@ -196,12 +202,12 @@ glint_status glint_material_create(const glint_material_desc *desc, glint_materi
     return GLINT_OK;
 }
 
-glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error)
+glint_status glint_material_set(glint_material *material, const glint_material_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(material, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_material_desc, defaults());
     glint_material_desc taken;
-    glint_status status = take(desc, &taken, error);
+    status = take(desc, &taken, error);
     if (status)
         return status;
     hold_programs(&taken);

@@ -7,9 +7,15 @@
 
 #define MOST ((size_t)INT32_MAX - 1) ///< most vertices, faces, triangles, normals and texture coordinates
 
-glint_mesh_desc glint_mesh_desc_default(void)
+static glint_mesh_desc defaults(void)
 {
     return (glint_mesh_desc) { .transform = glint_transform_identity(), .two_sided = true };
+}
+
+void glint_mesh_desc_init(glint_mesh_desc *desc, size_t size)
+{
+    const glint_mesh_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 void glint_mesh_free(glint_mesh *mesh)
@@ -403,11 +409,11 @@ static glint_status make_shape(const glint_mesh_desc *desc, glint_mesh_faults *f
     return status;
 }
 
-static glint_status make(const glint_mesh_desc *desc, glint_mesh_faults *faults, glint_shape **out, glint_error *error)
+static glint_status make(const glint_mesh_desc *given, glint_mesh_faults *faults, glint_shape **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    glint_status status = check_counts(desc, error);
+    GLINT_TAKE_DESC(glint_mesh_desc, defaults());
+    status = check_counts(desc, error);
     if (!status)
         status = check_vertices(desc, error);
     if (status)

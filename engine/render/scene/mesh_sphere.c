@@ -75,12 +75,12 @@ static void make_globe(globe *g, const double center[3], double radius)
 }
 
 glint_status glint_sphere_mesh_create(const double center[3], double radius, int64_t segments,
-                                      const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
+                                      const glint_mesh_desc *given, glint_shape **out, glint_error *error)
 {
     GLINT_REFUSE_NULL(center, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
-    glint_status status = glint_check_vector("center", center, error);
+    GLINT_TAKE_DESC(glint_mesh_desc, glint_mesh_desc_default());
+    status = glint_check_vector("center", center, error);
     if (!status && !(radius > 0 && isfinite(radius)))
         status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", radius);
     if (!status)
@@ -98,6 +98,7 @@ glint_status glint_sphere_mesh_create(const double center[3], double radius, int
     } else {
         make_globe(&g, center, radius);
         glint_mesh_desc mesh = *desc;
+        mesh.struct_size = sizeof mesh;
         mesh.vertices = g.vertices;
         mesh.vertex_count = mesh.normal_count = g.vertex_count;
         mesh.normals = g.normals;

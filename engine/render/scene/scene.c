@@ -57,6 +57,19 @@ const glint_object_field glint_scene_fields[] = {
     { .name = NULL },
 };
 
+static glint_scene_desc defaults(void)
+{
+    glint_scene_desc desc = { .struct_size = sizeof desc };
+    glint_fields_reset(glint_scene_fields, &desc);
+    return desc;
+}
+
+void glint_scene_desc_init(glint_scene_desc *desc, size_t size)
+{
+    const glint_scene_desc full = defaults();
+    glint_desc_write(desc, size, &full, sizeof full);
+}
+
 glint_status glint_scene_create(glint_scene **out, glint_error *error)
 {
     GLINT_REFUSE_NULL(out, error);
@@ -64,7 +77,7 @@ glint_status glint_scene_create(glint_scene **out, glint_error *error)
     if (!scene)
         return glint_fail_nomem(error);
     scene->references = 1;
-    glint_fields_reset(glint_scene_fields, &scene->desc);
+    scene->desc = defaults();
     *out = scene;
     return GLINT_OK;
 }
@@ -90,14 +103,10 @@ static glint_status check_together(const glint_scene_desc *desc, glint_error *er
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(scene, error);
-    if (!given)
-        return glint_fail(error, GLINT_ERR_INVALID, "desc: pointer expected, got NULL");
-    glint_scene_desc folded = *given;
-    const glint_scene_desc *desc = &folded;
-    if (given->background_program &&
-        glint_pattern_numbers(given->background_program, GLINT_REFLECTANCE_MAX, folded.background))
-        folded.background_program = NULL;
-    glint_status status = glint_fields_check(glint_scene_fields, desc, error);
+    GLINT_TAKE_DESC(glint_scene_desc, defaults());
+    if (desc->background_program && glint_pattern_numbers(desc->background_program, GLINT_REFLECTANCE_MAX, full.background))
+        full.background_program = NULL;
+    status = glint_fields_check(glint_scene_fields, desc, error);
     if (!status)
         status = check_together(desc, error);
     if (status)

@@ -112,12 +112,18 @@ const glint_object_field *const glint_shape_fields[] = {
     [GLINT_SHAPE_DIFFERENCE] = other_fields,
 };
 
-glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
+static glint_shape_desc defaults(glint_shape_kind kind)
 {
     glint_shape_desc desc = { .kind = kind, .transform = glint_transform_identity() };
     for (int k = GLINT_SHAPE_SPHERE; k <= GLINT_SHAPE_DIFFERENCE; k++)
         glint_fields_reset(glint_shape_fields[k], &desc);
     return desc;
+}
+
+void glint_shape_desc_init(glint_shape_desc *desc, size_t size, glint_shape_kind kind)
+{
+    const glint_shape_desc full = defaults(kind);
+    glint_desc_write(desc, size, &full, sizeof full);
 }
 
 // ---- Checks of several fields ----
@@ -216,13 +222,13 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
     return shape;
 }
 
-glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error)
+glint_status glint_shape_create(const glint_shape_desc *given, glint_shape **out, glint_error *error)
 {
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_shape_desc, defaults(given->kind));
     if (desc->kind > GLINT_SHAPE_DIFFERENCE || desc->kind == GLINT_SHAPE_MESH || glint_shape_is_many(desc->kind))
         return glint_fail(error, GLINT_ERR_INVALID, "kind: any kind except spheres, cylinders and mesh expected");
-    glint_status status = check(desc, error);
+    status = check(desc, error);
     if (status)
         return status;
     glint_shape *shape = glint_shape_alloc(desc, 1);
@@ -239,13 +245,13 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
     return GLINT_OK;
 }
 
-glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error)
+glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *given, glint_error *error)
 {
     GLINT_REFUSE_NULL(shape, error);
-    GLINT_REFUSE_NULL(desc, error);
+    GLINT_TAKE_DESC(glint_shape_desc, defaults(given->kind));
     if (desc->kind != shape->desc.kind)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: a shape cannot become one of another kind");
-    glint_status status = check(desc, error);
+    status = check(desc, error);
     if (status)
         return status;
     if (shape->mesh)

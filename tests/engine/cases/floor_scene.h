@@ -37,7 +37,7 @@ static inline glint_scene *make_floor(const double eye[3], const double at[3])
     memcpy(c.at, at, sizeof c.at);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
-    glint_scene_desc s = { .camera = camera };
+    glint_scene_desc s = { .struct_size = sizeof(glint_scene_desc), .camera = camera };
     assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
     memcpy(d.normal, (double[3]) { 0, 1, 0 }, sizeof d.normal);
     assert_int_equal(glint_shape_create(&d, &floor, NULL), GLINT_OK);

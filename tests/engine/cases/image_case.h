@@ -105,7 +105,7 @@ static inline glint_image *make_image(int width, int height, const glint_tone_de
 static inline glint_write_desc describe(const char *path)
 {
     static const glint_text text[] = {{"Software", "glint"}, {GLINT_PNG_KEY, KEY}};
-    return (glint_write_desc){
+    return (glint_write_desc) { .struct_size = sizeof(glint_write_desc),
         .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default(), .text = text, .text_count = 2};
 }
 

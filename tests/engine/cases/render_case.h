@@ -19,7 +19,7 @@ static inline glint_image *render_with(const glint_scene *scene, const char *isa
     glint_plan *plan;
     glint_image *image;
     glint_error error;
-    const glint_renderer_desc r = { .threads = 1, .isa = isa };
+    const glint_renderer_desc r = { .struct_size = sizeof(glint_renderer_desc), .threads = 1, .isa = isa };
     const glint_status status = glint_renderer_create(&r, &renderer, &error);
     if (status == GLINT_ERR_UNSUPPORTED)
         return NULL;

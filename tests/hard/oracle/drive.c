@@ -175,6 +175,7 @@ void scene_light_up(glint_scene *scene, double ambient, const double background[
 {
     glint_error error;
     glint_scene_desc desc = *glint_scene_get(scene);
+    desc.struct_size = sizeof desc;
     for (int c = 0; c < 3; c++) {
         desc.ambient[c] = ambient;
         desc.background[c] = background[c];
@@ -186,6 +187,7 @@ void scene_camera(glint_scene *scene, const glint_camera_desc *desc)
 {
     glint_error error;
     glint_scene_desc with = *glint_scene_get(scene);
+    with.struct_size = sizeof with;
     must(glint_camera_create(desc, &with.camera, &error), &error);
     must(glint_scene_set(scene, &with, &error), &error);
     glint_camera_release(with.camera);

@@ -2,10 +2,7 @@
 
 GLINT_LEFT_OUT(shutter, "shutter", "camera.shutter", "shutter", from->times)
 
-glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
-{
-    return frame ? *frame : (glint_render_desc) { 0 };
-}
+void glint_shutter_desc(glint_render_desc *desc) { (void)desc; }
 
 glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error)

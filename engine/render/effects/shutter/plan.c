@@ -14,17 +14,15 @@
 
 #define ROWS_MAX 0x1p27 ///< maximum number of light rows for all times, and of light samples
 
-glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
+void glint_shutter_desc(glint_render_desc *desc)
 {
-    if (!frame)
-        return (glint_render_desc) { 0 };
-    glint_render_desc desc = *frame;
-    desc.codes = false;
-    desc.derivatives = NULL;
-    desc.derivative_count = 0;
-    desc.outline = GLINT_OUTLINE_NONE;
-    desc.passes = (desc.passes & GLINT_LIGHT_PASSES) | 1u << GLINT_PASS_BEAUTY;
-    return desc;
+    if (!desc)
+        return;
+    desc->codes = false;
+    desc->derivatives = NULL;
+    desc->derivative_count = 0;
+    desc->outline = GLINT_OUTLINE_NONE;
+    desc->passes = (desc->passes & GLINT_LIGHT_PASSES) | 1u << GLINT_PASS_BEAUTY;
 }
 
 // ---- Whether only lights differ ----
@@ -222,7 +220,8 @@ static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
 static glint_status check_times(glint_plan *const *times, size_t count, const glint_render_desc *desc,
                                 glint_error *error)
 {
-    const glint_render_desc expected = glint_shutter_desc(desc);
+    glint_render_desc expected = *desc;
+    glint_shutter_desc(&expected);
     if (count < 1 || count > GLINT_SHUTTER_TIMES_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "times: 1 .. %d expected, got %zu", GLINT_SHUTTER_TIMES_MAX, count);
     for (size_t k = 0; k < count; k++) {
@@ -236,16 +235,16 @@ static glint_status check_times(glint_plan *const *times, size_t count, const gl
     return GLINT_OK;
 }
 
-glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
+glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *given, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error)
 {
     GLINT_REFUSE_NULL(scene, error);
-    GLINT_REFUSE_NULL(desc, error);
     GLINT_REFUSE_NULL(times, error);
     GLINT_REFUSE_NULL(out, error);
+    GLINT_TAKE_DESC(glint_render_desc, glint_render_desc_default());
     glint_plan_input from = { .scene = scene, .desc = desc, .shutter_times = (uint32_t)count };
     glint_plan *plan = NULL, *all = NULL;
-    glint_status status = check_times(times, count, desc, error);
+    status = check_times(times, count, desc, error);
     if (!status)
         status = glint_plan_make(&from, &plan, error);
     from.times = times;
