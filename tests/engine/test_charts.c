@@ -23,6 +23,7 @@ static page draw(const glint_curve *curves, size_t count, glint_overlay_desc des
     assert_non_null(overlays);
     assert_int_equal(glint_chart_create(curves, count, &p.chart, &error), GLINT_OK);
     assert_int_equal(glint_ink_open(WIDTH, HEIGHT, &p.ink, &error), GLINT_OK);
+    overlays->scale = overlays->enlarged = 1;
     overlays->width = WIDTH;
     overlays->height = HEIGHT;
     overlays->count = 1;
