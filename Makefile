@@ -261,7 +261,7 @@ $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 $(BUILD)/bindings/lua/unpack.o: OWN := $(ZSTD_CFLAGS)
 
 # Files embedded in the command, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
-CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/% bindings/cost/% bindings/run/%,$(wildcard bindings/*/*.lua))))
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css bindings/web/pages/formula.js $(filter-out bindings/meta/% bindings/cost/% bindings/run/%,$(wildcard bindings/*/*.lua))))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@

@@ -188,6 +188,13 @@ glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc 
 /// Returns the description; borrowed, valid until the overlay is set or released.
 const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay);
 
+/// Lists the commands of formulas, for programs that set formulas themselves. Returns the name of command number `index`
+/// without its backslash, such as "alpha"; NULL beyond the last one.
+///   text   its sign, UTF-8; static
+///   kind   "variable", set slanted; "large", a large operator; or the class of TeX's atom: "ordinary", "operator",
+///          "binary", "relation", "opening", "closing", "punctuation", "inner"
+const char *glint_formula_command(size_t index, const char **text, const char **kind);
+
 #pragma GCC visibility pop
 #ifdef __cplusplus
 }

@@ -88,7 +88,7 @@ layer engine/compare 'engine/glint_(files|compare).h' engine/files/picture $film
 
 public='engine/glint_(files|figures|compare|data).h'
 layer bindings/value "$public"
-layer bindings/run "$public" bindings/pattern bindings/value
+layer bindings/run "$public" bindings/pattern bindings/value bindings/web/pages
 layer bindings/pattern "$public" bindings/value
 layer bindings/lua "$public" bindings/run bindings/pattern bindings/value
 layer bindings/command "$public" bindings/run bindings/value scripts/lib scripts/lib/gr

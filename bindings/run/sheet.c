@@ -14,6 +14,9 @@
 static const char PAGE[] = {
 #include "bindings/run/sheet.html.h"
 };
+static const char FORMULA[] = {
+#include "bindings/web/pages/formula.js.h"
+};
 
 // Pushes the exit code of a status, and its message unless it is GLINT_OK.
 static int push_outcome(lua_State *L, glint_status status, const glint_error *error)
@@ -156,6 +159,27 @@ static int page_of_sheets(lua_State *L)
     return 1;
 }
 
+static int formula_source(lua_State *L)
+{
+    lua_pushlstring(L, FORMULA, sizeof FORMULA);
+    return 1;
+}
+
+// formula_commands(): returns a list of { name, text, kind } for the commands of formulas.
+static int formula_commands(lua_State *L)
+{
+    const char *name, *text, *kind;
+    lua_newtable(L);
+    for (size_t i = 0; (name = glint_formula_command(i, &text, &kind)) != NULL; i++) {
+        lua_createtable(L, 0, 3);
+        glintL_set_text(L, "name", name);
+        glintL_set_text(L, "text", text);
+        glintL_set_text(L, "kind", kind);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
 static glint_status append_text(glint_draft *draft, const char *text, glint_error *error)
 {
     return glint_draft_append(draft, text, strlen(text), error);
@@ -203,7 +227,8 @@ static int write_page(lua_State *L)
 
 const luaL_Reg glintL_sheet_functions[] = {
     { "read_picture", read_picture }, { "match_pictures", match_pictures }, { "draw_sheet", draw_sheet },
-    { "page_of_sheets", page_of_sheets },     { "write_page", write_page },         { NULL, NULL },
+    { "page_of_sheets", page_of_sheets }, { "write_page", write_page },
+    { "formula_source", formula_source }, { "formula_commands", formula_commands }, { NULL, NULL },
 };
 
 int glintL_sheet_make(lua_State *L, char message[GLINTL_MESSAGE_SIZE])

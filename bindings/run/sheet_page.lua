@@ -28,6 +28,18 @@ local function list_axes(sheet, axes)
   return concat(out)
 end
 
+-- Returns the script that sets the text of an element: with formulas if one of the texts may have some.
+local function set_text(texts)
+  if not match(texts, "%$") then return "const setText = (element, text) => { element.textContent = text };" end
+  local symbols = {}
+  for i, command in ipairs(the.formula_commands()) do
+    symbols[i] = format("%s: [%s, %s]", quoted(command.name), quoted(command.text), quoted(command.kind))
+  end
+  local source = gsub(gsub(the.formula_source(), "\nexport ", "\n"), '\nimport symbols from "[^"]*"', "")
+  return "const setText = (() => {\nconst symbols = { " .. concat(symbols, ", ") .. " };\n" .. source ..
+    "return setText })();"
+end
+
 -- Writes the page. Returns the exit code and a message.
 function M.make(sheet, axes, pictures, labels)
   local quotes, title = {}, html(sheet.title or "Contact sheet")
@@ -38,9 +50,10 @@ function M.make(sheet, axes, pictures, labels)
   local fields = { VERSION = the.version, TITLE = title, HEADING = sheet.title and "<h1>" .. title .. "</h1>\n" or "",
     DIFFERENCE = format("%d", sheet.difference or 0), GAIN = format("%g", sheet.gain or sheets.GAIN),
     GRID = axes.is_grid and "true" or "false", AXES = list_axes(sheet, axes), LABELS = concat(quotes),
+    SET_TEXT = set_text(title .. list_axes(sheet, axes) .. concat(quotes)),
     LIVE = sheet.live and "<h2>Try it</h2>\n" .. sheet.live or "" }
   local head, tail = match(the.page_of_sheets(), "^(.*)@PICTURES@(.*)$")
-  return the.write_page(sheet.path, (gsub(head, "@(%u+)@", fields)), sheet.files, tail)
+  return the.write_page(sheet.path, (gsub(head, "@([%u_]+)@", fields)), sheet.files, tail)
 end
 
 return M

@@ -7,10 +7,12 @@
 
 #include <cmocka.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/figures/text/line.h"
+#include "engine/glint_figures.h"
 
 #define EM 130.0
 #define LETTER 80.0
@@ -307,13 +309,33 @@ static void test_drawing(void **state)
     free(mask.coverage);
 }
 
+/// Programs can list the commands, and each of them can be set.
+static void test_commands(void **state)
+{
+    (void)state;
+    static const char *const expected[][3] = { { "alpha", "\xce\xb1", "variable" }, { "sum", "\xe2\x88\x91", "large" },
+                                               { "le", "\xe2\x89\xa4", "relation" }, { "cos", "cos", "operator" } };
+    const char *name, *text, *kind;
+    size_t found = 0, count = 0;
+    for (; (name = glint_formula_command(count, &text, &kind)) != NULL; count++) {
+        char formula[64];
+        snprintf(formula, sizeof formula, "$\\%s$", name);
+        set(formula);
+        for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
+            found += !strcmp(name, expected[i][0]) && !strcmp(text, expected[i][1]) && !strcmp(kind, expected[i][2]);
+    }
+    assert_int_equal(found, sizeof expected / sizeof *expected);
+    assert_true(count > 100);
+    assert_null(glint_formula_command(SIZE_MAX, &text, &kind));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_dollars),           cmocka_unit_test(test_fraction), cmocka_unit_test(test_scripts),
         cmocka_unit_test(test_spaces),            cmocka_unit_test(test_faults),   cmocka_unit_test(test_blanks),
         cmocka_unit_test(test_roots_and_accents), cmocka_unit_test(test_fences),
-        cmocka_unit_test(test_lecture_notes),   cmocka_unit_test(test_drawing)
+        cmocka_unit_test(test_commands),          cmocka_unit_test(test_lecture_notes),   cmocka_unit_test(test_drawing)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

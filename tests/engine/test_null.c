@@ -265,6 +265,7 @@ static void test_null_of_every_function(void **state)
     INVALID(glint_overlay_create(NULL, NULL, NULL));
     INVALID(glint_overlay_set(NULL, NULL, NULL));
     NOTHING(glint_overlay_get(NULL));
+    NOTHING(glint_formula_command(0, NULL, NULL));
     NOTHING(glint_overlay_retain(NULL));
     glint_overlay_release(NULL);
     INVALID(glint_chart_create(NULL, 0, NULL, NULL));

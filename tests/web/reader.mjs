@@ -3,7 +3,7 @@
 import { execFileSync } from "node:child_process"
 import { writeFileSync } from "node:fs"
 import { join } from "node:path"
-import { browser, check, close, DESK, figureOf, glint, open, PHONE, ready, runAll, settled, web, work, write } from "./browser.mjs"
+import { browser, check, close, DESK, figureOf, glint, open, PHONE, ready, run, runAll, settled, web, work, write } from "./browser.mjs"
 
 const publish = (script, page) => execFileSync(glint, ["publish", script, "-o", page], { cwd: work, stdio: "pipe", env: { ...process.env, GLINT_FONT: "", GLINT_WEB: web } })
 
@@ -142,4 +142,21 @@ async function messages() {
   await close(wrong, "faults")
 }
 
-await runAll([still, formulas, controls, messages])
+// A contact sheet as a page sets the formulas of its title, its axes and its values.
+async function sheet() {
+  writeFileSync(join(work, "axes.lua"), `local glint = require "glint"
+local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1 }
+return glint.sweep { size = { 64, 48 }, scene = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, ambient = 1, ball },
+  over = { { ball.material, "shininess", { 4, 16 } }, { ball.material, "model", { "phong", "blinn_phong" } } },
+  sheet = { output = "axes.html", title = [[Highlights $k_s (\\hat r \\cdot \\hat v)^n < \\sqrt{2}$ for $5 </script>]], names = { shininess = "exponent $n$", phong = [[$\\hat r$]] } } }`)
+  run("axes.lua", "-o", "axes.png")
+  const page = await open("about:blank")
+  await page.goto(`file://${join(work, "axes.html")}`)
+  const heading = page.locator("h1")
+  check((await heading.innerText()).endsWith("for $5 </script>") && await heading.locator("msqrt").count() === 1 && await heading.locator("mover").count() === 2, `sheet: ${await heading.innerText()}`)
+  check(await page.locator("form label math").count() === 1 && await page.locator("th math").count() === 2 && await page.locator("form output math").count() === 1, "sheet: axes and values")
+  check(!/[$\\]/.test(await page.locator("form").innerText()), `sheet: ${await page.locator("form").innerText()}`)
+  await close(page, "sheet")
+}
+
+await runAll([still, formulas, controls, messages, sheet])

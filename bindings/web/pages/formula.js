@@ -141,8 +141,8 @@ class Parser {
     }
     if (name in LETTERS) return this.argument(LETTERS[name])
     const [text, kind] = this.symbol(name)
-    if (kind === "OPERATOR" && /^[a-z]+$/.test(text)) return node("mrow", [node("mi", text, { mathvariant: "normal" }), node("mo", "\u2061")])
-    return kind === "VARIABLE" ? node("mi", text) : kind === "ORDINARY" ? node("mi", text, { mathvariant: "normal" }) : node("mo", text)
+    if (kind === "operator" && /^[a-z]+$/.test(text)) return node("mrow", [node("mi", text, { mathvariant: "normal" }), node("mo", "\u2061")])
+    return kind === "variable" ? node("mi", text) : kind === "ordinary" ? node("mi", text, { mathvariant: "normal" }) : node("mo", text)
   }
 
   root(style) {

@@ -8,6 +8,6 @@ const symbols = {}
 const source = readFileSync(process.argv[2], "utf8")
 const commands = source.slice(source.indexOf("commands[] = {"), source.indexOf("};", source.indexOf("commands[] = {")))
 for (const [, macro, name, text, rest] of commands.matchAll(/(SIGN|PLAIN|VARIABLE|LARGE)\("((?:[^"\\]|\\.)*)", "((?:[^"\\]|\\.)*)"([^)]*)\)/g))
-  symbols[spell(name)] = [spell(text), /[A-Z]+$/.exec(rest)?.[0] ?? (macro === "LARGE" ? "LARGE" : macro)]
-for (const [, name, text] of commands.matchAll(/\{ "(\w+)", "((?:[^"\\]|\\.)*)"/g)) symbols[name] = [spell(text), "LARGE"]
+  symbols[spell(name)] = [spell(text), (/[A-Z]+$/.exec(rest)?.[0] ?? macro).toLowerCase()]
+for (const [, name, text] of commands.matchAll(/\{ "(\w+)", "((?:[^"\\]|\\.)*)"/g)) symbols[name] = [spell(text), "large"]
 process.stdout.write(JSON.stringify(symbols))

@@ -1,4 +1,5 @@
 #include "engine/figures/text/symbols.h"
+#include "engine/glint_figures.h"
 
 #include <string.h>
 
@@ -188,4 +189,15 @@ const glint_symbol *glint_symbol_find(bool is_command, const char *name, size_t 
         if (glint_symbol_is(commands[i].text, name, size)) // the character itself: a Greek letter or a mathematical sign
             return &commands[i];
     return NULL;
+}
+
+const char *glint_formula_command(size_t index, const char **text, const char **kind)
+{
+    static const char *const kinds[] = { "ordinary", "operator", "binary", "relation", "opening", "closing", "punctuation", "inner" };
+    if (index >= sizeof commands / sizeof *commands || !text || !kind)
+        return NULL;
+    const glint_symbol *symbol = &commands[index];
+    *text = symbol->text;
+    *kind = symbol->is_variable ? "variable" : symbol->is_large ? "large" : kinds[symbol->atom];
+    return symbol->name;
 }
