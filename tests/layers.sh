@@ -76,7 +76,7 @@ done
 
 # ---- Around it ----
 figures='engine/glint_figures.h'
-layer engine/figures/text $base
+layer engine/figures/text "$figures" $base
 layer engine/figures/ink $figures engine/figures/text $film $base
 layer engine/figures/overlay $figures engine/figures/ink engine/figures/text $film $base
 layer engine/files/data engine/glint_data.h $base
