@@ -15,8 +15,9 @@
 ///           `_release(NULL)` does nothing. Pointers in a description struct are borrowed for the call only.
 /// Growth    a struct that begins with `struct_size`, its sizeof, gets more fields in later versions; others do not grow.
 ///           glint_X_desc_default() returns the defaults with the size; glint_X_desc_init() does it for other languages.
-///           A copy of what `_get` returns needs its own size: copy.struct_size = sizeof copy. Programs compiled with an
-///           earlier version still work: fields that they do not know have their defaults.
+///           A copy of what `_get` returns needs its own size: copy.struct_size = sizeof copy. A shorter struct is the
+///           beginning of one: the other fields have their defaults, so programs compiled with an earlier version work. In
+///           a longer one, all bytes after the known fields must be 0.
 /// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. Plans
 ///           and finished images are immutable. A renderer renders one frame at a time.
 #ifndef GLINT_H
@@ -63,11 +64,11 @@ typedef struct glint_scene_desc {
     bool has_depth_cue;
     bool has_depth_cue_color; ///< false: `background` is the colour; it must not be a pattern
     double depth_cue_color[3]; ///< finite, >= 0
-    double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
+    double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; near is 0 by default, far must be set
     /// false: `ambient` replaces all light that surfaces receive from each other and from the background
     bool has_indirect;
     /// Indirect light paths from each visible point, in cosine-weighted directions. Their mean light times kd is the
-    /// indirect light. 1 .. 65536.
+    /// indirect light. 1 .. 65536; must be set if `has_indirect` is.
     int64_t indirect_samples;
     /// Diffuse surfaces at which a path continues; 0 .. 2^31. At the next diffuse surface `ambient`
     /// replaces the rest; with 0 that is the first one. The part of a material's `ambient` above its `diffuse` is
@@ -78,7 +79,7 @@ typedef struct glint_scene_desc {
     /// `diffuse` is emitted light and stays in the pass `ambient`. Not together with `has_indirect`, which computes
     /// the light that arrives
     bool has_ambient_occlusion;
-    int64_t ambient_occlusion_samples; ///< number of rays from each visible point; 1 .. 65536
+    int64_t ambient_occlusion_samples; ///< number of rays from each visible point; 1 .. 65536, must be set
     /// World units, > 0, may be infinite: more distant surfaces do not occlude. A transmitting surface occludes only
     /// the light that it takes; the ray continues refracted, and the distance starts again there
     double ambient_occlusion_distance;
@@ -264,7 +265,7 @@ typedef struct glint_light_desc {
     size_t vertex_count;
     bool two_sided; ///< polygon: shines on both sides; default false
     int64_t samples; ///< area lights: number of shadow rays for each sample of a pixel; 1 .. 65536; default 16
-    bool has_radiance; ///< area lights: `radiance` gives the strength; `intensity` must then be 1
+    bool has_radiance; ///< area lights: `radiance` gives the strength, and `intensity` must be 1; false: it is ignored
     /// Name of the light pass that collects this group's lights; "": the light's own name
     char group[GLINT_NAME_SIZE];
     /// >= 0: the light adds kd times the integral of radiance cos cos' / distance^2 over its surface. With `intensity`,
@@ -340,10 +341,10 @@ typedef struct glint_material_desc {
     bool has_ambient; ///< false: `ambient` follows `diffuse`
     double ambient[3]; ///< reflectance: finite, >= 0; above 1 the surface gives off more light than it receives
     double diffuse[3]; ///< default 0.8
-    bool has_specular; ///< read only by cook_torrance; false: `specular` is 1
+    bool has_specular; ///< cook_torrance: false means that `specular` is 1. The other models do not read the flag
     double specular[3]; ///< default 0
     double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
-    bool has_mirror; ///< false: `mirror` is 1 with `fresnel` or cook_torrance, otherwise 0
+    bool has_mirror; ///< false: `mirror` is ignored; it is 1 with `fresnel` or cook_torrance, otherwise 0
     /// Fraction of the light along the mirrored ray that is added; >= 0, default 0. cook_torrance: factor of the light
     /// that the facets reflect from everything but the lamps, whose highlights are `specular`; default 1
     double mirror[3];
@@ -749,7 +750,8 @@ typedef struct glint_render_desc {
     double clamp;
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; stored in the image as linear float planes. Beauty may be left
         ///< out. With `outline`, the passes that it needs (depth, normal and object_id) are stored, too
-    bool codes; ///< compute integer pixel values of the beauty pass while rendering, by `tone`
+    bool codes; ///< compute integer pixel values of the beauty pass while rendering, by `tone`; see glint_files.h. Files and
+        ///< glint_image_rgba compute missing ones from the stored light
     /// Pixels that hit nothing are transparent: the background is black there and pixel values have alpha, so that a
     /// PNG of beauty is RGBA. Passes hold premultiplied light; pixel values hold unpremultiplied light, beauty /
     /// alpha. The background is also left out behind glass and translucent surfaces: see GLINT_PASS_ALPHA. Mirrored
@@ -841,7 +843,8 @@ void glint_renderer_cancel(glint_renderer *renderer);
 /// Returns the finished share of the current frame, 0 .. 1. Any thread.
 double glint_renderer_progress(const glint_renderer *renderer);
 
-/// Renders one frame. *out holds the passes and pixel values that the plan's description names. `stats` may be NULL.
+/// Renders one frame. *out holds the passes and pixel values that the plan's description names. stats: times and counts,
+/// see glint_inspect.h; may be NULL.
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error);
 

@@ -34,7 +34,7 @@ typedef struct glint_write_desc {
     /// depth.Z, normal.X ... diffuse.B
     const char *path;
     glint_pass pass; ///< a pass of the image; ignored by .exr, which has all
-    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. .exr: with 16 `bits`, light
+    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see bindings/README.md. .exr: with 16 `bits`, light
     /// and normals are half floats; with 8, they are float. Everything else is always float. .svg: like .png; .pdf:
     /// 8-bit sRGB values only
     glint_tone_desc tone;
@@ -44,7 +44,7 @@ typedef struct glint_write_desc {
     /// background stays black; for a derivative, the mean of its three components is shown
     int colormap;
     /// .png of depth and derivatives: the values at the ends of the grey scale or colour map, which is linear;
-    /// finite. Equal (default): the picture's own range, see README
+    /// finite. Equal (default): the picture's own range, see bindings/README.md
     double range[2];
     const glint_text *text; ///< .png and .exr
     size_t text_count; ///< 0: no texts

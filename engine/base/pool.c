@@ -91,7 +91,7 @@ static int start_workers(glint_pool *pool, int threads)
 glint_status glint_pool_create(int threads, glint_pool **out, glint_error *error)
 {
     if (threads < 1 || threads > 1024)
-        return glint_fail(error, GLINT_ERR_INVALID, "threads: whole number 1 .. 1024 expected, got %d", threads);
+        return glint_fail(error, GLINT_ERR_INVALID, "threads: whole number 0 .. 1024 expected, got %d", threads);
     glint_pool *pool = calloc(1, sizeof *pool + (size_t)(threads - 1) * sizeof *pool->workers);
     if (!pool)
         return glint_fail_nomem(error);

@@ -30,8 +30,11 @@ glint_status glint_desc_read(void *full, size_t size, const void *desc, glint_er
     bool good = given > sizeof given && given <= DESC_MAX;
     for (size_t i = size; good && i < given; i++)
         good = ((const char *)desc)[i] == 0;
+    if (!good && given > size && given <= DESC_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "desc.struct_size: a field that this version does not know: after %zu bytes, all must be 0", size);
     if (!good)
-        return glint_fail(error, GLINT_ERR_INVALID, "desc.struct_size: sizeof the struct expected (%zu in this version), got %zu",
+        return glint_fail(error, GLINT_ERR_INVALID, "desc.struct_size: sizeof the struct expected (%zu in this version), got %zu; _desc_init sets it",
                           size, given);
     memcpy(full, desc, given < size ? given : size);
     memcpy(full, &size, sizeof size);

@@ -1,6 +1,7 @@
 #include "engine/film/cover.h"
 
 #include "engine/base/vec.h"
+#include "engine/glint.h"
 
 double glint_cover_project(const glint_cover_camera *camera, const double p[3], double out[2])
 {

@@ -626,6 +626,7 @@ return glint.scene { camera = glint.camera { eye = { 0, 3, 9 }, at = { 0, 0, 0 }
   glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { mirror = 0.4, roughness = 0.2 } } }
 END
     exits 0 "explain a glossy floor" explain glossy.lua --size 10x8 --samples 4 # 320 samples, 8 rays each, 16 shadow rays each
+    prints "explain a glossy floor: samples" 'samples = 4$'
     prints "explain a glossy floor: shadows" '^  shadow     40960 more at most where these rays hit first$'
     prints "explain a glossy floor: each" 'for each sample of a pixel: 8 rays beyond the surface x 16 shadow rays\. Fewer by reflection_samples'
     exits 0 "explain a glossy floor, --json" explain glossy.lua --size 10x8 --samples 4 --json

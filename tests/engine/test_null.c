@@ -98,6 +98,18 @@ static void test_null_of_scenes(void **state)
     assert_int_equal(glint_scene_add_shape(p.scene, NULL, NULL), GLINT_ERR_INVALID); // a call without an error struct
     assert_int_equal(glint_scene_shape_count(p.scene), 0);
     assert_int_equal(glint_group_count(p.group), 0);
+    // numbers beyond the last object, and a name without an end
+    char name[GLINT_NAME_SIZE] = "";
+    glint_error error;
+    assert_true(!glint_scene_shape_at(p.scene, 0) && !glint_scene_light_at(p.scene, 0) && !glint_scene_overlay_at(p.scene, 0));
+    assert_true(!glint_group_child(p.group, 0) && !glint_group_child(p.shape, 3));
+    glint_scene_light_pass(p.scene, 7, name);
+    assert_string_equal(name, "");
+    glint_light_desc light = *glint_light_get(p.light);
+    light.struct_size = sizeof light;
+    memset(light.name, 'x', sizeof light.name);
+    assert_int_equal(glint_light_set(p.light, &light, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "name: at most 63 bytes and a NUL expected");
     destroy(&p);
 }
 

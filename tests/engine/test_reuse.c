@@ -961,7 +961,7 @@ static void stages_that_scale_light_stand_between_depth_cue_and_refine(void **un
     (void)unused;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         const glint_stage *stage = glint_stage_table[id];
-        assert_true(!stage->scales || (id >= GLINT_STAGE_DEPTH_CUE && id < GLINT_STAGE_REFINE && stage->own));
+        assert_true(!stage->scales || (id >= GLINT_STAGE_DEPTH_CUE && id < GLINT_STAGE_ADAPTIVE && stage->own));
     }
 }
 

@@ -53,6 +53,7 @@ async function open(address, viewport = { width: 1200, height: 800 }, deviceScal
     if (!message.text().includes("willReadFrequently")) page.messages.push(`${message.type()}: ${message.text()}`)
   })
   page.on("pageerror", error => page.messages.push(`error: ${error.message}`))
+  await page.addInitScript(() => document.addEventListener("glint-render", ({ target, detail }) => { target.isFull = !detail.coarse }, true))
   await page.goto(address)
   return page
 }
@@ -441,7 +442,7 @@ async function dragging() {
       writeFileSync(join(web, "dragging.html"), `<!doctype html><meta name="viewport" content="width=device-width"><link rel="icon" href="data:,">
         <script type="module" src="glint-figure.js"></script><glint-figure><script type="text/x-lua" name="${name}">${script}</script></glint-figure>`)
       const page = await open(`${base}/dragging.html`, viewport, density), one = page.locator("glint-figure"), what = `${name} on a page of ${viewport.width} pixels`
-      await rendered(one, () => {})
+      await page.waitForFunction(() => document.querySelector("glint-figure").isFull) // it may be full already
       const shown = await one.locator(".picture").boundingBox(), found = await dragged(page, one, param)
       const moving = found.filter(picture => picture.coarse && picture.ownSamples === 1), last = found.at(-1)
       const sizes = [...new Set(moving.map(picture => `${picture.width}x${picture.height}`))], times = moving.map(picture => Math.round(picture.ms)).sort((a, b) => a - b)

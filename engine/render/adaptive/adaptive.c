@@ -94,7 +94,7 @@ static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const
         to->tone_ms += base->tone_ms;
     }
     for (int i = 0; i < to->stage_count; i++)
-        if (time_stages && to->stage_name[i] == glint_stage_table[GLINT_STAGE_REFINE]->name)
+        if (time_stages && to->stage_name[i] == glint_stage_table[GLINT_STAGE_ADAPTIVE]->name)
             to->stage_ms[i] = choose_ms + compare_ms;
 }
 
@@ -103,7 +103,7 @@ static double comparing_ms(const glint_renderer *renderer)
 {
     double ms = 0;
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
-        ms += (double)renderer->tiles[i]->counts.ns[GLINT_STAGE_REFINE] * 1e-6;
+        ms += (double)renderer->tiles[i]->counts.ns[GLINT_STAGE_ADAPTIVE] * 1e-6;
     return ms;
 }
 

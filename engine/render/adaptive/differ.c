@@ -308,5 +308,5 @@ void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_f
     own->clipped = tile->counts.clipped - before.clipped;
     own->nonfinite = tile->counts.nonfinite - before.nonfinite;
     own->pixels = 0; // until the film is signed
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_REFINE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_ADAPTIVE, false);
 }

@@ -31,7 +31,7 @@ void glint_gathered_destroy(struct glint_gathered *gathered) { free(gathered); }
 /// Returns whether a group is the samples of one pixel.
 static bool groups_samples(const glint_tile_frame *frame)
 {
-    return frame->geometry.prim_count > FEW_PRIMS || frame->plan->runs[GLINT_STAGE_VERTEX];
+    return frame->geometry.prim_count > FEW_PRIMS || frame->plan->runs[GLINT_STAGE_VERTEX_SHADING];
 }
 
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame,

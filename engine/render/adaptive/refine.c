@@ -136,11 +136,11 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 static bool called(const glint_plan *plan) { return plan->desc.adaptive > 0 && plan->desc.samples > 1; }
 
 /// Runs before all other stages, because it chooses the pixels that they run for.
-const glint_stage glint_stage_refine = {
+const glint_stage glint_stage_adaptive = {
     .name = "refine",
     .doc = "which pixels get all samples, by edges of objects, normals and contrast",
     .called = called,
     .own = own_key,
-    .reads = GLINT_READS_OWN(REFINE),
+    .reads = GLINT_READS_OWN(ADAPTIVE),
     .walks = true,
 };

@@ -65,7 +65,7 @@ static void *create_for(const glint_plan *plan)
         good = (sums->faded = glint_alloc(groups->count, sizeof *sums->faded)) && good;
     if (glint_plan_sends_rays(plan))
         good = (sums->batch = create(groups->count)) && good;
-    if (plan->runs[GLINT_STAGE_VERTEX])
+    if (plan->runs[GLINT_STAGE_VERTEX_SHADING])
         good = (sums->points = create(groups->count)) && good;
     if (sums->batch)
         sums->batch->points = sums->points; // batches use `points`, too
@@ -238,7 +238,7 @@ static void add_light(const double *restrict light, uint32_t count, double sampl
 /// Computes the mean of the light without a lamp, in one channel. lamps: the sums of all groups.
 static void find_rest(const glint_tile *tile, const glint_plan *plan, int c, const double *lamps, float *mean)
 {
-    const double rounding = plan->runs[GLINT_STAGE_VERTEX] ? ROUNDING_OF_POINTS : ROUNDING;
+    const double rounding = plan->runs[GLINT_STAGE_VERTEX_SHADING] ? ROUNDING_OF_POINTS : ROUNDING;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         double all = 0;
         for (int k = 0; k < GLINT_TERM_COUNT; k++)

@@ -48,7 +48,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
 {
     to->counts.shadow += batch->tile.counts.shadow;
     glint_work_add(&to->counts.work, &batch->tile.counts.work);
-    to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
+    to->counts.runs[GLINT_STAGE_VERTEX_SHADING] += batch->tile.counts.runs[GLINT_STAGE_VERTEX_SHADING];
     glint_odd_patterns_add(&to->counts.odd, &batch->tile.counts.odd);
 }
 
@@ -288,13 +288,13 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, glint_sam
 
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, const glint_tile_frame *lights, bool any)
 {
-    const glint_stage *vertex = frame->plan->runs[GLINT_STAGE_VERTEX] ? glint_stage_table[GLINT_STAGE_VERTEX] : NULL;
+    const glint_stage *vertex = frame->plan->runs[GLINT_STAGE_VERTEX_SHADING] ? glint_stage_table[GLINT_STAGE_VERTEX_SHADING] : NULL;
     glint_sample_walk walk = { .rays = true, .points = true, .any = any, .shines = any };
     if (vertex)
-        vertex->step[GLINT_AT_SIGHT](&batch->tile, frame, &walk);
+        vertex->step[GLINT_AFTER_PRIMARY](&batch->tile, frame, &walk);
     glint_batch_shine(batch, lights, walk.shines);
     if (vertex)
-        vertex->step[GLINT_AT_REST](&batch->tile, frame, &walk);
+        vertex->step[GLINT_AFTER_LIGHTS](&batch->tile, frame, &walk);
 }
 
 void glint_batch_find_patterns(glint_batch *batch, const glint_tile_frame *frame)

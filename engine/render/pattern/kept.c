@@ -287,6 +287,6 @@ const glint_stage glint_stage_pattern = {
     .called = gives_numbers,
     .own = own_key,
     .reads = GLINT_READS_OWN(PATTERN),
-    .step[GLINT_AT_SIGN] = sign,
+    .step[GLINT_AT_KEYS] = sign,
     .aside = true, // stages that read its results also read the materials with their programs
 };

@@ -44,7 +44,7 @@ const glint_stage glint_stage_occlude = {
     .name = "occlude",
     .doc = "which points each shadow-casting light reaches",
     .called = casts_shadows,
-    .reads = GLINT_READS(SHADOWS) | GLINT_READS_OWN(TINT),
+    .reads = GLINT_READS(SHADOWS) | GLINT_READS_OWN(TRANSPARENT_SHADOW),
     .per_light = true,
     .walks = true,
 };

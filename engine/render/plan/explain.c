@@ -4,6 +4,7 @@
 #include "engine/render/plan/plan.h"
 #include "engine/render/scene/area_light.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -233,7 +234,7 @@ static void shapes(explainer *e, const char *effect, shape_test *test)
     end(e);
 }
 
-static void one(explainer *e, bool called, const char *effect, const char *format, ...)
+__attribute__((format(printf, 4, 5))) static void one(explainer *e, bool called, const char *effect, const char *format, ...)
 {
     if (!called)
         return;
@@ -245,11 +246,11 @@ static void one(explainer *e, bool called, const char *effect, const char *forma
     add_line(e, effect, caller);
 }
 
-static void veil(explainer *e)
+static void eye_medium(explainer *e)
 {
     const glint_plan *plan = e->plan;
     char caller[2 * GLINT_NAME_SIZE];
-    if (!plan->veil.on)
+    if (!plan->eye_medium.on)
         return;
     const glint_material *material = plan->geometry->materials.items[glint_media_top(&plan->eye_media)];
     glint_describe_material(&material->desc, "glass around the eye", caller, sizeof caller);
@@ -302,7 +303,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
             plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "faster here than casting rays",
             plan->geometry->table.triangles);
         shapes(e, "smooth normals", is_smooth);
-        if (plan->runs[GLINT_STAGE_VERTEX]) {
+        if (plan->runs[GLINT_STAGE_VERTEX_SHADING]) {
             shapes(e, "flat shading", is_flat);
             shapes(e, "Gouraud shading", is_gouraud);
         }
@@ -340,14 +341,14 @@ static void list_effects(explainer *e, const glint_scene *scene)
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         one(e, plan->own[id] && glint_stage_table[id]->effect, glint_stage_table[id]->effect, "%s",
             glint_stage_table[id]->caller);
-    veil(e);
+    eye_medium(e);
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
     overlays(e, scene);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
     one(e, plan->shutter_times, "shutter", "camera: mean of %u times", plan->shutter_times);
-    one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
-    one(e, plan->runs[GLINT_STAGE_REFINE], "samples only where needed", "adaptive = %g", plan->desc.adaptive);
+    one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %" PRId64, plan->desc.samples);
+    one(e, plan->runs[GLINT_STAGE_ADAPTIVE], "samples only where needed", "adaptive = %g", plan->desc.adaptive);
     one(e, plan->desc.precision == GLINT_PRECISION_FLOAT, "float decides hits and shadows", "precision = float");
     static const char *const curves[] = { "clamp", "reinhard", "filmic" };
     const glint_tone_desc *tone = &plan->desc.tone;

@@ -130,8 +130,8 @@ glint_status glint_plan_eye(glint_plan *plan, glint_error *error)
     if (eye.count == 0)
         return GLINT_OK;
     const glint_bounce_material *m = &plan->bouncing[glint_media_top(&plan->eye_media)];
-    plan->veil.on = m->absorption[0] > 0 || m->absorption[1] > 0 || m->absorption[2] > 0;
-    plan->veil.material = glint_media_top(&plan->eye_media);
-    vec_copy(plan->veil.absorption, m->absorption);
+    plan->eye_medium.on = m->absorption[0] > 0 || m->absorption[1] > 0 || m->absorption[2] > 0;
+    plan->eye_medium.material = glint_media_top(&plan->eye_media);
+    vec_copy(plan->eye_medium.absorption, m->absorption);
     return GLINT_OK;
 }

@@ -168,7 +168,7 @@ static glint_key vertex_key(const glint_plan *plan)
     return add_inputs(plan,
                       GLINT_READS(POSITIONS) | GLINT_READS(APPEARANCE) | GLINT_READS_OWN(CUT_OUT) |
                           GLINT_READS(HIGHLIGHTS) | GLINT_READS(LIGHT_POSITIONS) | GLINT_READS(SHADOWS) |
-                          GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS) | GLINT_READS_OWN(TINT) |
+                          GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS) | GLINT_READS_OWN(TRANSPARENT_SHADOW) |
                           GLINT_READS_OWN(DERIVATIVE) | GLINT_READS_OWN(LIGHT_GROUPS),
                       key);
 }
@@ -196,7 +196,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         plan->matte_keys[i] = matte_key(plan, i, none);
     }
     plan->all_materials_key = add_inputs(
-        plan, GLINT_READS(MATERIALS) | GLINT_READS_OWN(TINT) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE) |
+        plan, GLINT_READS(MATERIALS) | GLINT_READS_OWN(TRANSPARENT_SHADOW) | GLINT_READS_OWN(INDIRECT) | GLINT_READS_OWN(BOUNCE) |
                   GLINT_READS_OWN(ROUGH),
         none);
     plan->all_lights_key =

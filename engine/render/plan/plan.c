@@ -99,7 +99,7 @@ static bool is_local(const glint_plan *plan)
 /// Returns whether all samples of a tile can be shaded together: the data of all samples fit into the tile's memory.
 static bool shades_together(const glint_plan *plan)
 {
-    return plan->local && !plan->runs[GLINT_STAGE_VERTEX] && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
+    return plan->local && !plan->runs[GLINT_STAGE_VERTEX_SHADING] && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
            plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK;
 }
 
@@ -125,7 +125,7 @@ static void list_steps(glint_plan *plan)
 static void choose_stages(glint_plan *plan)
 {
     plan->tints = glint_plan_is_lit(plan) && (plan->transmits || plan->clears) && plan->shadow_count > 0;
-    plan->dims = plan->tints && plan->absorbs;
+    plan->absorbs_transmitted = plan->tints && plan->absorbs;
     plan->accumulate = plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         plan->accumulate = plan->accumulate || (glint_stage_table[id]->sums && glint_stage_table[id]->called(plan));
@@ -222,7 +222,7 @@ glint_status glint_plan_make(const glint_plan_input *from, glint_plan **out, gli
     status = fill(plan, from, error);
     if (!status)
         status = take_overlays(plan, scene, error);
-    if (!status && plan->runs[GLINT_STAGE_REFINE]) {
+    if (!status && plan->runs[GLINT_STAGE_ADAPTIVE]) {
         glint_render_desc base = glint_plan_base(&plan->desc);
         base.derivatives = desc->derivatives;
         status = glint_plan_create(scene, &base, &plan->base, error);
@@ -371,7 +371,7 @@ void glint_plan_key(const glint_plan *plan, uint64_t key[2])
 {
     if (!plan || !key)
         return;
-    const glint_key own = glint_plan_picture_key(plan, GLINT_STAGE_REFINE);
+    const glint_key own = glint_plan_picture_key(plan, GLINT_STAGE_ADAPTIVE);
     key[0] = own.high;
     key[1] = own.low;
 }

@@ -113,7 +113,7 @@ struct glint_plan {
         bool on;
         uint32_t material; ///< the innermost medium
         double absorption[3];
-    } veil; ///< the medium that contains the eye; `on`: it absorbs light
+    } eye_medium; ///< the medium that contains the eye; `on`: it absorbs light
 
     glint_plan_derivatives *derivatives; ///< NULL: none is requested
     struct glint_light_groups *light_groups; ///< NULL: no light pass is requested
@@ -127,7 +127,7 @@ struct glint_plan {
     glint_media eye_media; ///< the media that contain the eye of a perspective camera
     bool tints; ///< whether some light casts shadows and some material transmits or is translucent, so that shadows
         ///< may be tinted
-    bool dims; ///< whether, in addition, some material absorbs transmitted light
+    bool absorbs_transmitted; ///< whether, in addition, some material absorbs transmitted light
     double brightest; ///< upper bound of the light along any ray; may be infinite
 
     glint_cover *cover; ///< overlays, drawn over the finished picture; NULL: none

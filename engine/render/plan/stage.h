@@ -62,16 +62,16 @@ typedef enum glint_stage_time {
     GLINT_AT_SURFACE, ///< points and normals are known: for the tile's own rays, or for secondary rays
     GLINT_AT_HITS, ///< the nearest objects are known for a sample of the primary rays
     GLINT_AT_ALBEDO, ///< the reflectances of the surfaces that the eye sees are known; with the pass albedo
-    GLINT_AT_SIGHT, ///< visible lights are known, too; hits no longer change
+    GLINT_AFTER_PRIMARY, ///< visible lights are known, too; hits no longer change
     GLINT_AT_LIT, ///< before the lights, if some point of the sample is shaded
     GLINT_AT_LIGHT, ///< after each light or, for an area light, after its samples
     GLINT_AT_SHADED, ///< after each chunk of lights is shaded
-    GLINT_AT_REST, ///< after all lights
+    GLINT_AFTER_LIGHTS, ///< after all lights
     GLINT_AT_MISSED, ///< the secondary rays that leave the scene are known; not if the walk has all of them
-    GLINT_AT_SENT, ///< the light of secondary rays is added to the tile that they left
+    GLINT_AFTER_SECONDARY, ///< the light of secondary rays is added to the tile that they left
     GLINT_AT_SUMMED, ///< all light of the sample has been added to the sums, which hold the samples so far
     GLINT_AT_DONE, ///< after the last sample, before the mean is taken
-    GLINT_AT_SIGN, ///< keys of cached results are set
+    GLINT_AT_KEYS, ///< keys of cached results are set
     GLINT_AT_STORE, ///< the pixels go to the picture
     GLINT_AT_STORE_LIGHT, ///< the light of the pixels goes to the picture
     GLINT_TIME_COUNT

@@ -110,7 +110,7 @@ static void carry_hits(const carry *c, glint_cached_tile *tile)
         tile->box.only = moved(c, tile->box.only);
     renew(&tile->cast, was[GLINT_STAGE_CAST], is[GLINT_STAGE_CAST]);
     renew(&tile->pattern, was[GLINT_STAGE_PATTERN], is[GLINT_STAGE_PATTERN]);
-    renew(&tile->view, was[GLINT_STAGE_VIEW], is[GLINT_STAGE_VIEW]);
+    renew(&tile->view, was[GLINT_STAGE_MICROFACET_VIEW], is[GLINT_STAGE_MICROFACET_VIEW]);
     renew(&tile->seen, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
     renew(&tile->boxed, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
 }
@@ -165,7 +165,7 @@ static void carry_all(const carry *c)
         carry_tile(c, i, (uint32_t)(i % across), (uint32_t)(i / across));
     reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // unchanged positions may be cached from now on
     renew(&reuse->pattern, c->before->keys[GLINT_STAGE_PATTERN], c->plan->keys[GLINT_STAGE_PATTERN]);
-    renew(&reuse->view, c->before->keys[GLINT_STAGE_VIEW], c->plan->keys[GLINT_STAGE_VIEW]);
+    renew(&reuse->view, c->before->keys[GLINT_STAGE_MICROFACET_VIEW], c->plan->keys[GLINT_STAGE_MICROFACET_VIEW]);
     for (uint32_t i = 0; i < reuse->light_count; i++)
         renew(&reuse->light[i], c->before->lights[i].key, c->plan->lights[i].key);
 }

@@ -88,14 +88,14 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     reuse->caches_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
     glint_splits_begin(&reuse->splits, plan);
-    reuse->caches_view = is_eager || reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
-    reuse->view = plan->keys[GLINT_STAGE_VIEW];
+    reuse->caches_view = is_eager || reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_MICROFACET_VIEW]);
+    reuse->view = plan->keys[GLINT_STAGE_MICROFACET_VIEW];
     glint_earlier_lights(reuse, plan);
 }
 
 bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan)
 {
-    if (plan->derivatives || plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->shading_points))
+    if (plan->derivatives || plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX_SHADING] && tile->shading_points))
         return true;
     if (!glint_plan_sends_rays(plan) || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
         return glint_plan_sends_rays(plan) || plan->tints;

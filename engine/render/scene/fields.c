@@ -113,6 +113,10 @@ static glint_status check(const glint_object_field *f, const char *desc, glint_e
         return glint_check_transform(f->name, (const glint_transform *)(const void *)at, error);
     case GLINT_TYPE_TABLE:
         return check_parts(f, desc, error);
+    case GLINT_TYPE_TEXT:
+        if (memchr(at, '\0', GLINT_NAME_SIZE))
+            return GLINT_OK;
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %d bytes and a NUL expected", f->name, GLINT_NAME_SIZE - 1);
     case GLINT_TYPE_CHOICE:
         memcpy(&choice, at, sizeof choice);
         return check_choice(f, choice, error);

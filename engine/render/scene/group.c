@@ -158,5 +158,5 @@ size_t glint_group_count(const glint_shape *group) { return group ? group->child
 
 glint_shape *glint_group_child(const glint_shape *group, size_t index)
 {
-    return group ? group->children.items[index] : NULL;
+    return group && index < group->children.count ? group->children.items[index] : NULL;
 }

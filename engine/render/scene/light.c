@@ -268,7 +268,7 @@ void glint_describe_light(const glint_light_desc *desc, size_t number, char *out
 
 void glint_scene_light_pass(const glint_scene *scene, size_t index, char name[GLINT_NAME_SIZE])
 {
-    if (!scene || !name)
+    if (!name || index >= glint_scene_light_count(scene))
         return;
     const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
     char plain[GLINT_NAME_SIZE];

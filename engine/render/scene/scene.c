@@ -231,15 +231,15 @@ size_t glint_scene_overlay_count(const glint_scene *scene) { return scene ? scen
 
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index)
 {
-    return scene ? glint_scene_shape(scene, index) : NULL;
+    return index < glint_scene_shape_count(scene) ? glint_scene_shape(scene, index) : NULL;
 }
 
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index)
 {
-    return scene ? glint_scene_light(scene, index) : NULL;
+    return index < glint_scene_light_count(scene) ? glint_scene_light(scene, index) : NULL;
 }
 
 glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index)
 {
-    return scene ? scene->overlays.items[index] : NULL;
+    return index < glint_scene_overlay_count(scene) ? scene->overlays.items[index] : NULL;
 }

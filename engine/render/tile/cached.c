@@ -214,7 +214,7 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
         if (reuse->caches_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
             cached->lights[i].occlude = plan->lights[i].key;
     }
-    glint_tile_step(tile, frame, GLINT_AT_SIGN, NULL);
+    glint_tile_step(tile, frame, GLINT_AT_KEYS, NULL);
 }
 
 // ---- Contents of the tile ----

@@ -230,7 +230,7 @@ typedef struct glint_sample_walk {
     uint32_t from, count; ///< the current chunk of the plan's light rows: its first row and its number of rows; at
         ///< GLINT_AT_LIGHT, `count` is the number of rows from `slot` on, in that chunk
     uint32_t slot;
-    struct glint_batch *batch; ///< the secondary rays, at GLINT_AT_MISSED and GLINT_AT_SENT
+    struct glint_batch *batch; ///< the secondary rays, at GLINT_AT_MISSED and GLINT_AFTER_SECONDARY
     double (*albedo)[GLINT_TILE_SAMPLES]; ///< channels of the pass albedo, at GLINT_AT_ALBEDO
 } glint_sample_walk;
 
@@ -446,7 +446,7 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 /// is shaded.
 static inline uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g)
 {
-    return ((const uint16_t *)tile->own[GLINT_STAGE_TINT])[g]; // the stage's memory begins with these lanes
+    return ((const uint16_t *)tile->own[GLINT_STAGE_TRANSPARENT_SHADOW])[g]; // the stage's memory begins with these lanes
 }
 
 /// tile/stages.c: computes the position of a light sample as seen from sample i. `scale`: see glint_light_args. Point (and normal

@@ -187,7 +187,7 @@ static void need_shading(glint_tile *tile, const glint_tile_frame *frame, glint_
     }
     if (any)
         find_patterns(tile, frame, w);
-    const bool inside = frame->plan->dims; // to find points inside an absorbing medium
+    const bool inside = frame->plan->absorbs_transmitted; // to find points inside an absorbing medium
     if (lit && !w->points && (inside || glint_tile_shows_shader(tile, frame->plan)))
         glint_tile_need_points(tile, frame, w);
 }
@@ -203,7 +203,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     tile->own_planes = frame->plan->together ? k : 0;
     glint_pattern_point(tile->pattern, tile, GLINT_WALK_EYE);
     w.shines = find_hits(tile, frame, &w);
-    glint_tile_step(tile, frame, GLINT_AT_SIGHT, &w);
+    glint_tile_step(tile, frame, GLINT_AFTER_PRIMARY, &w);
     const uint32_t lights = w.shines ? frame->plan->light_count : 0;
     uint32_t from = 0;
     if (w.shines)
@@ -222,7 +222,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         glint_tile_step(tile, frame, GLINT_AT_SHADED, &w);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
-    glint_tile_step(tile, frame, GLINT_AT_REST, &w);
+    glint_tile_step(tile, frame, GLINT_AFTER_LIGHTS, &w);
     glint_tile_step(tile, frame, GLINT_AT_SUMMED, &w);
 }
 
@@ -237,11 +237,11 @@ static void sample_gathered(glint_tile *tile, const glint_tile_frame *frame, con
     tile->own_lights = 0;
     glint_tile_gather(tile, frame, slots, count, first, samples);
     w.shines = find_hits(tile, frame, &w);
-    glint_tile_step(tile, frame, GLINT_AT_SIGHT, &w);
+    glint_tile_step(tile, frame, GLINT_AFTER_PRIMARY, &w);
     const uint32_t lights = w.shines ? frame->plan->light_count : 0;
     find_lights(tile, frame, &w, 0, lights);
     need_shading(tile, frame, &w, w.any, w.shines, 0);
-    glint_tile_step(tile, frame, GLINT_AT_REST, &w);
+    glint_tile_step(tile, frame, GLINT_AFTER_LIGHTS, &w);
     glint_tile_shade_gathered(tile, frame, lights, slots, count, first, samples);
 }
 

@@ -385,7 +385,7 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
     if (any || bounce->batch.whole)
         glint_batch_light(&bounce->batch, frame, frame, any);
     collect(&bounce->batch, frame->plan, to);
-    glint_tile_step(to, frame, GLINT_AT_SENT, &(glint_sample_walk) { .any = any, .batch = &bounce->batch });
+    glint_tile_step(to, frame, GLINT_AFTER_SECONDARY, &(glint_sample_walk) { .any = any, .batch = &bounce->batch });
     if (any)
         spawn(bounce, frame, level);
 }
@@ -475,7 +475,7 @@ const glint_stage glint_stage_bounce = {
     .sums = true,
     .normals = true,
     .remote = true,
-    .step = { [GLINT_AT_ALBEDO] = add_albedo, [GLINT_AT_REST] = add },
+    .step = { [GLINT_AT_ALBEDO] = add_albedo, [GLINT_AFTER_LIGHTS] = add },
     .adds = adds,
     .create = create,
     .destroy = destroy,

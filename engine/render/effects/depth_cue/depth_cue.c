@@ -47,7 +47,7 @@ static void find(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
         depth_cue->share[i] = share_of(glint_plan_depth_cue_of(plan), distance);
         for (int c = 0; c < 3; c++)
             depth_cue->transmittance[c][i] =
-                (1 - depth_cue->share[i]) * glint_plan_transmittance(plan->veil.absorption[c], distance);
+                (1 - depth_cue->share[i]) * glint_plan_transmittance(plan->eye_medium.absorption[c], distance);
     }
 }
 
@@ -88,8 +88,8 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
     const glint_plan_depth_cue *cue = glint_plan_depth_cue_of(plan);
     if (cue)
         GLINT_KEY_ADD(key, *cue);
-    if (plan->veil.on)
-        GLINT_KEY_ADD(key, plan->veil.absorption);
+    if (plan->eye_medium.on)
+        GLINT_KEY_ADD(key, plan->eye_medium.absorption);
     return key;
 }
 
@@ -108,7 +108,7 @@ static glint_status prepare(glint_plan *plan, const glint_plan_input *from, glin
     return GLINT_OK;
 }
 
-static bool called(const glint_plan *plan) { return glint_plan_depth_cue_of(plan) || plan->veil.on; }
+static bool called(const glint_plan *plan) { return glint_plan_depth_cue_of(plan) || plan->eye_medium.on; }
 
 const glint_stage glint_stage_depth_cue = {
     .name = "depth_cue",
@@ -123,7 +123,7 @@ const glint_stage glint_stage_depth_cue = {
     .sums = true,
     .remote = true,
     .scales = true,
-    .step = { [GLINT_AT_SIGHT] = find, [GLINT_AT_SUMMED] = fade, [GLINT_AT_DONE] = take_faded },
+    .step = { [GLINT_AFTER_PRIMARY] = find, [GLINT_AT_SUMMED] = fade, [GLINT_AT_DONE] = take_faded },
     .create = create,
     .destroy = free,
 };

@@ -92,10 +92,10 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
     if (plan->environment && d->bends && plan->runs[GLINT_STAGE_BOUNCE])
         return "background: moving objects or bending rays has no derivative where mirrors or glass may show a "
                "pattern or texture as the background; use a plain colour";
-    if (plan->dims && (absorbs || d->moves))
+    if (plan->absorbs_transmitted && (absorbs || d->moves))
         return "absorption: light through an absorbing material has no derivative by absorption or movement; set "
                "shadows = false for the lights";
-    const bool thins = plan->veil.on && glint_any_slope(d->bounces[plan->veil.material].absorption);
+    const bool thins = plan->eye_medium.on && glint_any_slope(d->bounces[plan->eye_medium.material].absorption);
     if (plan->runs[GLINT_STAGE_DEPTH_CUE] && plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && (d->bends || d->fades || thins))
         return "scene.depth_cue, absorption: movement and fading have no derivative where visible lights may be "
                "seen; set visible = false for the lights";

@@ -300,7 +300,7 @@ static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32
 static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t row, uint32_t slot)
 {
     const glint_plan_light *light = &frame->plan->lights[row];
-    const uint16_t *sampled = frame->plan->runs[GLINT_STAGE_VERTEX] ? tile->at.sampled : tile->at.hits;
+    const uint16_t *sampled = frame->plan->runs[GLINT_STAGE_VERTEX_SHADING] ? tile->at.sampled : tile->at.hits;
     const uint16_t *lit = tile->at.light[slot].lit;
     const uint16_t *open = light->shadows ? tile->at.light[slot].unoccluded : lit;
     const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
@@ -309,7 +309,7 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const unsigned hits = sampled[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
         const unsigned reached = above ? open[g] & above : 0;
-        const unsigned dimmed = reached && light->shadows && frame->plan->dims ? glint_tile_dim_lanes(tile, g) : 0;
+        const unsigned dimmed = reached && light->shadows && frame->plan->absorbs_transmitted ? glint_tile_dim_lanes(tile, g) : 0;
         if (shift)
             note_shadows(tile, light, g, above, reached);
         lanes[g] = (uint16_t)(reached & ~dimmed);

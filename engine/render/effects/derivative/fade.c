@@ -48,7 +48,7 @@ static fade find_fade(const glint_plan *plan, const glint_plan_derivative *d, gl
     fade out = { .share = share_of(plan, d, distance) };
     const glint_dual rest = dual_sub(dual(1, 0), out.share);
     for (int c = 0; c < 3; c++) {
-        const double a = plan->veil.absorption[c], more = plan->veil.on ? d->bounces[plan->veil.material].absorption[c] : 0;
+        const double a = plan->eye_medium.absorption[c], more = plan->eye_medium.on ? d->bounces[plan->eye_medium.material].absorption[c] : 0;
         const double transmittance = glint_plan_transmittance(a, distance.value);
         out.transmittance[c] = rest;
         if (distance.value < HUGE_VAL)

@@ -82,7 +82,7 @@ const glint_stage glint_stage_derivative = {
     .reads = GLINT_READS_OWN(DERIVATIVE),
     .normals = true,
     .remote = true,
-    .step = { [GLINT_AT_SHADED] = derive, [GLINT_AT_REST] = fade, [GLINT_AT_SENT] = collect, [GLINT_AT_STORE] = store },
+    .step = { [GLINT_AT_SHADED] = derive, [GLINT_AFTER_LIGHTS] = fade, [GLINT_AFTER_SECONDARY] = collect, [GLINT_AT_STORE] = store },
     .adds = glint_tile_adds_anywhere,
     .singles = always,
     .create = create,

@@ -325,7 +325,7 @@ const glint_stage glint_stage_environment = {
     .called = called,
     .sums = true,
     .remote = true,
-    .step = { [GLINT_AT_SIGHT] = need_directions, [GLINT_AT_MISSED] = show_missed },
+    .step = { [GLINT_AFTER_PRIMARY] = need_directions, [GLINT_AT_MISSED] = show_missed },
     .after_shade = add_background,
     .adds = glint_tile_adds_anywhere,
     .create = glint_environment_create,

@@ -597,7 +597,7 @@ const glint_stage glint_stage_indirect = {
     .sums = true,
     .normals = true,
     .remote = true,
-    .step = { [GLINT_AT_REST] = add, [GLINT_AT_SENT] = add_sent },
+    .step = { [GLINT_AFTER_LIGHTS] = add, [GLINT_AFTER_SECONDARY] = add_sent },
     .adds = glint_tile_adds_to_hits,
     .create = create,
     .destroy = glint_indirect_destroy,

@@ -5,12 +5,12 @@
 
 #include <stdlib.h>
 
-static glint_tile_facets *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VIEW]; }
+static glint_tile_facets *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_MICROFACET_VIEW]; }
 
 static bool view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_cached_tile *cached = tile->cached;
-    const bool known = cached && glint_key_equal(cached->view, frame->plan->keys[GLINT_STAGE_VIEW]);
+    const bool known = cached && glint_key_equal(cached->view, frame->plan->keys[GLINT_STAGE_MICROFACET_VIEW]);
     tile->at.facing = own_of(tile)->facing;
     if (known || (cached && frame->reuse->caches_view &&
                   (k ? cached->facing != NULL : glint_reuse_hold_view(frame->reuse, cached))))
@@ -41,7 +41,7 @@ static void sign(glint_tile *tile, const glint_tile_frame *frame, glint_sample_w
     const glint_reuse *reuse = frame->reuse;
     glint_cached_tile *cached = tile->cached;
     if (reuse->caches_view && cached->facing)
-        cached->view = plan->keys[GLINT_STAGE_VIEW];
+        cached->view = plan->keys[GLINT_STAGE_MICROFACET_VIEW];
     for (uint32_t i = 0; i < reuse->light_count; i++)
         if (reuse->caches_light[i] && cached->lights[i].sine2)
             cached->lights[i].facet = plan->lights[i].key;
@@ -58,7 +58,7 @@ static void view(glint_tile *tile, const glint_tile_frame *frame)
         args.direction[c] = tile->rays.direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].view(&args);
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_MICROFACET_VIEW, false);
 }
 
 static void facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot, uint32_t count)
@@ -85,8 +85,8 @@ static void facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t firs
         args.direction[c] = tile->rays.direction[c];
     }
     frame->stages->geometry[plan->desc.precision].facet(&args);
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, false);
-    tile->counts.runs[GLINT_STAGE_FACET] += count - 1;
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_MICROFACET, false);
+    tile->counts.runs[GLINT_STAGE_MICROFACET] += count - 1;
 }
 
 static bool called(const glint_plan *plan) { return glint_plan_is_lit(plan) && plan->facets; }
@@ -95,7 +95,7 @@ static bool called(const glint_plan *plan) { return glint_plan_is_lit(plan) && p
 static void find_view(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
 {
     if (view_memory(tile, frame, walk->sample)) {
-        glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, true);
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_MICROFACET_VIEW, true);
         return;
     }
     glint_tile_need_points(tile, frame, walk);
@@ -108,7 +108,7 @@ static void find_facets(glint_tile *tile, const glint_tile_frame *frame, glint_s
     uint32_t unknown[GLINT_LIGHT_CHUNK], unknown_count = 0;
     for (uint32_t i = walk->slot; i < walk->slot + walk->count; i++) {
         if (facet_memory(tile, frame, walk->sample, walk->from + i, i))
-            glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, true);
+            glint_tile_count_stage(tile, frame, GLINT_STAGE_MICROFACET, true);
         else
             unknown[unknown_count++] = i;
     }
@@ -124,7 +124,7 @@ static void *create(const glint_plan *plan)
     return glint_alloc(1, sizeof(glint_tile_facets));
 }
 
-const glint_stage glint_stage_view = {
+const glint_stage glint_stage_microfacet_view = {
     .name = "view",
     .doc = "cosine of the viewing angle at each point, for microfacets",
     .called = called,
@@ -135,11 +135,11 @@ const glint_stage glint_stage_view = {
     .shared = true,
 };
 
-const glint_stage glint_stage_facet = {
+const glint_stage glint_stage_microfacet = {
     .name = "facet",
     .doc = "half vector and Fresnel factor of each light, for microfacets",
     .called = called,
     .per_light = true,
     .remote = true,
-    .step = { [GLINT_AT_LIGHT] = find_facets, [GLINT_AT_SIGN] = sign },
+    .step = { [GLINT_AT_LIGHT] = find_facets, [GLINT_AT_KEYS] = sign },
 };

@@ -294,7 +294,7 @@ const glint_stage glint_stage_rough = {
     .normals = true,
     .remote = true,
     .adds = adds,
-    .step = { [GLINT_AT_REST] = add, [GLINT_AT_SENT] = add_sent },
+    .step = { [GLINT_AFTER_LIGHTS] = add, [GLINT_AFTER_SECONDARY] = add_sent },
     .create = create,
     .destroy = destroy,
     .sized = true,

@@ -44,7 +44,7 @@ static bool equal_own_data(const glint_plan *a, const glint_plan *b)
 /// Returns whether two plans are equal except for lights and for the conversion to pixel values.
 static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
 {
-    static const glint_stage_id read[] = { GLINT_STAGE_SURFACE, GLINT_STAGE_PATTERN, GLINT_STAGE_VIEW };
+    static const glint_stage_id read[] = { GLINT_STAGE_SURFACE, GLINT_STAGE_PATTERN, GLINT_STAGE_MICROFACET_VIEW };
     for (size_t i = 0; i < sizeof read / sizeof *read; i++)
         if (!glint_key_equal(a->keys[read[i]], b->keys[read[i]]))
             return false;

@@ -58,7 +58,7 @@ static void *create(const glint_plan *plan)
     return glint_alloc(1, sizeof(struct glint_transparent_shadow));
 }
 
-static struct glint_transparent_shadow *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_TINT]; }
+static struct glint_transparent_shadow *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_TRANSPARENT_SHADOW]; }
 
 /// Returns the medium on the viewer's side of the shaded point. The light arrives through the same medium.
 static glint_media media_at(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
@@ -106,7 +106,7 @@ static bool find_dim(const glint_tile *tile, const glint_tile_frame *frame)
 static bool is_kept_off(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const unsigned whole = tile->at.light[slot].unoccluded[g] & ~(plan->dims ? own_of(tile)->dim[g] : 0u);
+        const unsigned whole = tile->at.light[slot].unoccluded[g] & ~(plan->absorbs_transmitted ? own_of(tile)->dim[g] : 0u);
         if (tile->at.light[slot].lit[g] & ~whole)
             return true;
     }
@@ -150,7 +150,7 @@ static bool ball_around(const glint_tile *tile, glint_ball *ball)
 static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                         const uint16_t *lanes, uint16_t *tinted)
 {
-    const glint_tints *tints = frame->own[GLINT_STAGE_TINT];
+    const glint_tints *tints = frame->own[GLINT_STAGE_TRANSPARENT_SHADOW];
     const glint_tint_light seen = light_seen(tile, light);
     uint16_t chosen[GLINT_TINTS_MAX];
     glint_ball ball;
@@ -178,7 +178,7 @@ static bool find_tinted(const glint_tile *tile, const glint_tile_frame *frame, c
 /// points must be known.
 static bool may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light)
 {
-    return (frame->plan->dims && find_dim(tile, frame)) ||
+    return (frame->plan->absorbs_transmitted && find_dim(tile, frame)) ||
            (light->shadows && find_tinted(tile, frame, light, tile->at.hits, own_of(tile)->tinted));
 }
 
@@ -214,7 +214,7 @@ static unsigned followed(const glint_tile *tile, uint32_t slot, uint32_t g)
 
 static unsigned dimmed(const glint_tile *tile, const glint_plan *plan, uint32_t slot, uint32_t g)
 {
-    return plan->dims ? tile->at.light[slot].unoccluded[g] & own_of(tile)->dim[g] : 0;
+    return plan->absorbs_transmitted ? tile->at.light[slot].unoccluded[g] & own_of(tile)->dim[g] : 0;
 }
 
 // ---- Rays ----
@@ -571,7 +571,7 @@ static void add_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 {
     const glint_plan *plan = frame->plan;
     uint32_t from = 0, rays = 0;
-    if (!choose_points(tile, frame, index, slot, count) && !plan->dims)
+    if (!choose_points(tile, frame, index, slot, count) && !plan->absorbs_transmitted)
         return;
     const int *plane = plan->patterns ? plan->patterns->plane : NULL;
     own_of(tile)->planes = plane && (plane[GLINT_FIELD_TRANSMISSION] >= 0 || plane[GLINT_FIELD_CLEAR] >= 0)
@@ -618,14 +618,14 @@ static glint_key own_key(const glint_plan *plan, glint_key key)
 
 static glint_status begin_frame(glint_renderer *renderer, glint_tile_frame *frame, glint_error *error)
 {
-    glint_tints *tints = renderer->own[GLINT_STAGE_TINT];
-    if (!tints && !(tints = renderer->own[GLINT_STAGE_TINT] = malloc(sizeof *tints)))
+    glint_tints *tints = renderer->own[GLINT_STAGE_TRANSPARENT_SHADOW];
+    if (!tints && !(tints = renderer->own[GLINT_STAGE_TRANSPARENT_SHADOW] = malloc(sizeof *tints)))
         return glint_fail_nomem(error);
     glint_tints_find(tints, frame->plan, &frame->geometry);
     return GLINT_OK;
 }
 
-static void end(glint_renderer *renderer) { free(renderer->own[GLINT_STAGE_TINT]); }
+static void end(glint_renderer *renderer) { free(renderer->own[GLINT_STAGE_TRANSPARENT_SHADOW]); }
 
 /// Adds the light of a chunk of lights through transparent objects.
 static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_walk *walk)
@@ -642,7 +642,7 @@ static void mask_dim(glint_tile *tile, const glint_tile_frame *frame, glint_shad
 {
     struct glint_transparent_shadow *own = own_of(tile);
     (void)args;
-    if (!frame->plan->dims || count == 0 || !find_dim(tile, frame))
+    if (!frame->plan->absorbs_transmitted || count == 0 || !find_dim(tile, frame))
         return;
     for (uint32_t i = 0; i < count; i++) {
         if (!frame->plan->lights[from + i].shadows)
@@ -655,11 +655,11 @@ static void mask_dim(glint_tile *tile, const glint_tile_frame *frame, glint_shad
 
 static bool adds(const glint_tile *tile, const glint_tile_frame *frame, bool any)
 {
-    return any && (frame->plan->dims || is_shadowed(tile, frame->plan, 0, frame->plan->light_count));
+    return any && (frame->plan->absorbs_transmitted || is_shadowed(tile, frame->plan, 0, frame->plan->light_count));
 }
 
 /// Runs as a part of the stages occlude and shade.
-const glint_stage glint_stage_tint = {
+const glint_stage glint_stage_transparent_shadow = {
     .calls = "cut_out derivative",
     .called = called,
     .own = own_key,

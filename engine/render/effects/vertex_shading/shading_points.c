@@ -41,8 +41,8 @@ static glint_status ensure_capacity(glint_shading_points_cached *shading_points,
 glint_status glint_shading_points_begin(glint_renderer *renderer, glint_tile_frame *frame, glint_error *error)
 {
     const glint_plan *plan = frame->plan;
-    glint_shading_points_cached *shading_points = renderer->own[GLINT_STAGE_VERTEX];
-    if (!shading_points && !(shading_points = renderer->own[GLINT_STAGE_VERTEX] = calloc(1, sizeof *shading_points)))
+    glint_shading_points_cached *shading_points = renderer->own[GLINT_STAGE_VERTEX_SHADING];
+    if (!shading_points && !(shading_points = renderer->own[GLINT_STAGE_VERTEX_SHADING] = calloc(1, sizeof *shading_points)))
         return glint_fail_nomem(error);
     const uint32_t count = plan->geometry->table.shading_point_count;
     const uint32_t blocks = (count + GLINT_SHADING_POINT_BLOCK - 1) / GLINT_SHADING_POINT_BLOCK;
@@ -54,7 +54,7 @@ glint_status glint_shading_points_begin(glint_renderer *renderer, glint_tile_fra
             return status;
     }
     const bool known = shading_points->reserved && glint_key_equal(shading_points->key, plan->vertex_key);
-    uint64_t *reuses = &renderer->tiles[0]->counts.reuses[GLINT_STAGE_VERTEX];
+    uint64_t *reuses = &renderer->tiles[0]->counts.reuses[GLINT_STAGE_VERTEX_SHADING];
     for (uint32_t i = 0; i < 2 * blocks; i++) {
         if (!known)
             atomic_store_explicit(&shading_points->state[i], GLINT_BLOCK_NONE, memory_order_relaxed);
@@ -66,6 +66,6 @@ glint_status glint_shading_points_begin(glint_renderer *renderer, glint_tile_fra
 
 void glint_shading_points_end(glint_renderer *renderer)
 {
-    clear(renderer->own[GLINT_STAGE_VERTEX], &renderer->reuse);
-    free(renderer->own[GLINT_STAGE_VERTEX]);
+    clear(renderer->own[GLINT_STAGE_VERTEX_SHADING], &renderer->reuse);
+    free(renderer->own[GLINT_STAGE_VERTEX_SHADING]);
 }

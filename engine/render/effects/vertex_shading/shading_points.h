@@ -33,7 +33,7 @@ void glint_shading_points_end(glint_renderer *renderer);
 
 static inline glint_shading_points_cached *glint_shading_points_of(const glint_tile_frame *frame)
 {
-    return frame->own[GLINT_STAGE_VERTEX];
+    return frame->own[GLINT_STAGE_VERTEX_SHADING];
 }
 
 /// Caches the light of a block of faces or vertices for each group of lights; nothing without light passes.

@@ -46,7 +46,7 @@ static bool fit(void *memory, const glint_plan *plan)
     return !plan->derivatives || glint_tile_fit_stage(&vertex->batch.tile, plan, GLINT_STAGE_DERIVATIVE);
 }
 
-static struct glint_vertex *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VERTEX]; }
+static struct glint_vertex *own_of(const glint_tile *tile) { return tile->own[GLINT_STAGE_VERTEX_SHADING]; }
 
 // ---- Positions ----
 
@@ -281,7 +281,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
         glint_derive_store_block(tile, frame, block);
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
         to->counts.work.sites += (uint64_t)__builtin_popcount(tile->hit.mask[g]);
-    to->counts.runs[GLINT_STAGE_VERTEX]++;
+    to->counts.runs[GLINT_STAGE_VERTEX_SHADING]++;
 }
 
 // ---- A tile ----
@@ -403,8 +403,8 @@ static void add_to(glint_tile *tile, const glint_tile_frame *frame, double (*to)
     spread(tile, frame, to);
     if (frame->plan->derivatives)
         glint_derive_vertex(tile, frame, own_of(tile)->wanted);
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX, false);
-    tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX_SHADING, false);
+    tile->counts.runs[GLINT_STAGE_VERTEX_SHADING]--; // blocks are counted, not calls
 }
 
 static bool called(const glint_plan *plan)
@@ -426,7 +426,7 @@ static void add(glint_tile *tile, const glint_tile_frame *frame, glint_sample_wa
     add_to(tile, frame, walk->gathered ? glint_tile_gathered_points(tile) : tile->film.sum + GLINT_TERM_DIFFUSE);
 }
 
-const glint_stage glint_stage_vertex = {
+const glint_stage glint_stage_vertex_shading = {
     .name = "vertex",
     .doc = "light computed once for each face or vertex",
     .calls = "derivative",
@@ -435,7 +435,7 @@ const glint_stage glint_stage_vertex = {
     .end = glint_shading_points_end,
     .reads = GLINT_READS(LIGHT_COLORS) | GLINT_READS(MATERIALS),
     .sums = true,
-    .step = { [GLINT_AT_SIGHT] = choose, [GLINT_AT_REST] = add },
+    .step = { [GLINT_AFTER_PRIMARY] = choose, [GLINT_AFTER_LIGHTS] = add },
     .adds = glint_tile_adds_to_hits,
     .create = create,
     .destroy = destroy,
