@@ -583,13 +583,38 @@ static void open_both(glint_renderer_desc desc, glint_renderer *both[2])
     }
 }
 
+static void clear_terminators(glint_shape *shape)
+{
+    glint_shape_desc d = *glint_shape_get(shape);
+    d.struct_size = sizeof d;
+    d.terminator = 0;
+    glint_shape_set(shape, &d, NULL);
+    for (size_t i = 0; i < glint_group_count(shape); i++)
+        clear_terminators(glint_group_child(shape, i));
+}
+
+/// Plans a frame. Frames refuse a terminator on a material that light passes through: then no shape has one.
+static glint_plan *plan_frame(const world *w)
+{
+    glint_plan *plan = NULL;
+    glint_error error = { 0 };
+    glint_status status = glint_plan_create(w->scene, &w->render, &plan, &error);
+    if (status && strstr(error.message, ".terminator: expected 0")) {
+        for (int i = 0; i < SHAPES; i++)
+            clear_terminators(w->shapes[i]);
+        status = glint_plan_create(w->scene, &w->render, &plan, &error);
+    }
+    if (status)
+        fail_msg("%s", error.message);
+    return plan;
+}
+
 /// Renders a frame with both renderers, which must give the same picture. *stats, unless NULL, gets the statistics of
 /// the first renderer.
 static void render_both(const world *w, glint_renderer *const both[2], glint_frame_stats *stats, int frame)
 {
-    glint_plan *plan;
+    glint_plan *plan = plan_frame(w);
     glint_image *image[2];
-    assert_int_equal(glint_plan_create(w->scene, &w->render, &plan, NULL), GLINT_OK);
     for (int i = 0; i < 2; i++)
         assert_int_equal(glint_render(both[i], plan, &image[i], i ? NULL : stats, NULL), GLINT_OK);
     if (!same_pixels(image[0], image[1], w->render.passes) || !same_codes(image[0], image[1]))
@@ -639,10 +664,9 @@ static void edits(size_t memory, int threads, bool adaptive, bool is_eager, doub
             w.render.adaptive = edit / 16 % 4 == 3 ? 0 : edit / 64 % 2 ? 0.02 : 0.2;
             w.render.samples = w.render.samples > 1 ? w.render.samples : 3;
         }
-        glint_plan *plan;
+        glint_plan *plan = plan_frame(&w);
         glint_image *a, *b;
         glint_frame_stats stats;
-        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
         assert_int_equal(glint_render(reusing, plan, &a, &stats, NULL), GLINT_OK);
         assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
         for (int i = 0; i < stats.stage_count; i++)
