@@ -163,7 +163,7 @@ static void read_distance(lua_State *L, int index, const char *path, glintL_dist
 void glintL_begin_table(const glintL_field *parts, void *desc)
 {
     for (const glintL_field *f = parts; f->name; f++) {
-        const int64_t whole = (int64_t)f->initial[0];
+        const int64_t whole = f->type == GLINT_TYPE_WHOLE ? (int64_t)f->initial[0] : 0;
         if (f->set_offset)
             ((bool *)desc)[f->set_offset] = false;
         else if (f->type == GLINT_TYPE_WHOLE)
