@@ -209,11 +209,11 @@ typedef struct glintL_tracing {
     bool (*is_source)(lua_State *L, int index, bool is_shader);
     void (*refuse)(lua_State *L, const char *what);
     void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
-    void (*keep_all)(lua_State *L, int index, int table, const glintL_field *fields);
+    void (*keep_all)(lua_State *L, int index, int table, const glintL_field *fields); ///< glintL_keep_sources
     void (*keep_closed)(lua_State *L, int index);
     const luaL_Reg *methods; ///< methods of vectors; ended by a NULL name
     lua_CFunction map_array; ///< the method `map` of arrays
-    int (*frame_field)(const char *name); ///< glintL_render_find
+    int (*frame_field)(const char *name); ///< glintL_render_find: returns the number of a frame's field, or -1
 } glintL_tracing;
 
 void glintL_set_tracing(lua_State *L, const glintL_tracing *tracing);
