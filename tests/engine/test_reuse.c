@@ -637,10 +637,10 @@ static double seconds(void)
     return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-/// Renders after each of many edits with two renderers, one of which reuses nothing. adaptive: most frames take all
-/// samples only for some pixels.
-/// is_eager: hits are cached from the first frame on.
-static void edits(size_t memory, int threads, bool adaptive, bool is_eager, double limit_s)
+/// Renders after each of `count` edits (fewer where a test takes every n-th case) with two renderers, one of which
+/// reuses nothing. adaptive: most frames take all samples only for some pixels. is_eager: hits are cached from the
+/// first frame on.
+static void edits(size_t memory, int threads, bool adaptive, bool is_eager, uint64_t count)
 {
     world w;
     glint_renderer *reusing, *fresh;
@@ -653,11 +653,12 @@ static void edits(size_t memory, int threads, bool adaptive, bool is_eager, doub
     desc.no_reuse = true;
     assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
     make_world(&w);
-    const double start = seconds();
+    const char *soak = getenv("GLINT_SOAK_SECONDS"); // as many edits as a twentieth of this time allows
+    const double end = soak ? seconds() + atof(soak) / 20 : 0;
     uint64_t reused = 0, edit = 0;
     glint_image *last = NULL; ///< a retained picture, into which the renderer must not write again
     void (*const kinds[])(world *) = { edit_material, edit_material, edit_light, edit_light, edit_shape, edit_frame };
-    for (; seconds() - start < limit_s; edit++) {
+    for (count = (count - 1) / case_step() + 1; soak ? seconds() < end : edit < count; edit++) {
         if (draw(8)) // sometimes nothing changes
             kinds[draw(edit % 4 ? 4 : 6)](&w);
         if (adaptive) {
@@ -695,34 +696,31 @@ static uint64_t seed(uint64_t test)
     return test + (other ? 1000 * strtoull(other, NULL, 10) : 0);
 }
 
-static double limit_s(double usual)
-{
-    const char *soak = getenv("GLINT_SOAK_SECONDS");
-    return soak ? atof(soak) / 4 : usual;
-}
-
 static void reused_equals_fresh(void **unused)
 {
     (void)unused;
     state = seed(1);
-    edits(0, 2, false, false, limit_s(4));
-    edits(0, 2, false, true, limit_s(4));
+    edits(0, 2, false, false, 150);
+    state = seed(5);
+    edits(0, 2, false, true, 120);
 }
 
 static void reused_equals_fresh_of_chosen_pixels(void **unused)
 {
     (void)unused;
     state = seed(4);
-    edits(0, 2, true, false, limit_s(4));
-    edits(0, 2, true, true, limit_s(4));
-    edits(1000000, 2, true, false, limit_s(1));
+    edits(0, 2, true, false, 80);
+    state = seed(6);
+    edits(0, 2, true, true, 120);
+    state = seed(7);
+    edits(1000000, 2, true, false, 12);
 }
 
 static void reused_equals_fresh_without_memory(void **unused)
 {
     (void)unused;
     state = seed(2);
-    edits(1, 2, false, true, limit_s(1));
+    edits(1, 2, false, true, 25);
 }
 
 static void reused_equals_fresh_with_little_memory(void **unused)
@@ -730,7 +728,7 @@ static void reused_equals_fresh_with_little_memory(void **unused)
     (void)unused;
     state = seed(3);
     for (size_t memory = 20000; memory < 4000000; memory = memory * 3 / 2)
-        edits(memory, 8, false, memory > 200000, limit_s(2) / 14);
+        edits(memory, 8, false, memory > 200000, 8);
 }
 
 /// Each call of shade sums a chunk of an area light's samples. An earlier light inside a closed ball reaches nothing
