@@ -778,6 +778,9 @@ typedef struct glint_render_desc {
     /// or without light passes, and all of them add up to it within a relative error of 2^-21. Borrowed by
     /// glint_plan_create; a plan's own description has them without "*".
     const char *light_passes;
+    /// 0 (default): no limit. Above 0, at most 65536: the most rays of each kind that a sample sends: to an area light,
+    /// of indirect light or ambient occlusion, and from a rough surface. For quick pictures of a scene that is edited
+    int64_t rays;
 } glint_render_desc;
 
 /// Writes the defaults: 1280 x 720, 1 sample, double, passes = beauty, codes = false.

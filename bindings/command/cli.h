@@ -135,7 +135,7 @@ struct cli_option {
     bool repeats; ///< the option may be given several times
     const char *group; ///< heading in --help for this option and those after it
 };
-#define CLI_OPTION_COUNT 79
+#define CLI_OPTION_COUNT 80
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 bool cli_option_may_lack(const cli_option *option); ///< returns whether the option's value is optional
 /// Pushes a table of the options that were given and whose values are flags, texts or numbers.

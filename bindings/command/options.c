@@ -17,7 +17,7 @@
 // The fields of scene:render{} that relight accepts as options: the fields that convert light to a picture.
 enum {
     RELIGHTS_samples, RELIGHTS_seed = 0, RELIGHTS_precision = 0, RELIGHTS_alpha = 0, RELIGHTS_outline = 0,
-    RELIGHTS_visibility = 0, RELIGHTS_clamp = 0, RELIGHTS_dither = CLI_RELIGHT, RELIGHTS_bits = CLI_RELIGHT, RELIGHTS_transfer = CLI_RELIGHT, RELIGHTS_rounding = CLI_RELIGHT,
+    RELIGHTS_visibility = 0, RELIGHTS_clamp = 0, RELIGHTS_rays = 0, RELIGHTS_dither = CLI_RELIGHT, RELIGHTS_bits = CLI_RELIGHT, RELIGHTS_transfer = CLI_RELIGHT, RELIGHTS_rounding = CLI_RELIGHT,
     RELIGHTS_tone = CLI_RELIGHT, RELIGHTS_encode = CLI_RELIGHT
 };
 

@@ -61,6 +61,7 @@ static void read_shot(lua_State *L, const cost_study *study, cost_setting *out)
     desc->seed = luaL_optinteger(L, 4, desc->seed);
     if (lua_toboolean(L, 5)) {
         desc->adaptive = 0;
+        desc->rays = 0;
         desc->precision = GLINT_PRECISION_DOUBLE;
     }
 }

@@ -40,6 +40,7 @@ typedef struct glintL_render {
     OPTION(samples, NUMBER, WHOLE, desc.samples, 1, GLINTL_SAMPLES_MAX, NULL, "N", "samples per pixel")                       \
     OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "chooses another sample pattern")                   \
     OPTION(clamp, NUMBER, REAL, desc.clamp, 0, 1e9, NULL, "LIGHT", "most light that one random path brings; 0: no limit") \
+    OPTION(rays, NUMBER, WHOLE, desc.rays, 0, GLINTL_SAMPLES_MAX, NULL, "N", "most rays of each kind from a sample; 0: no limit") \
     FIELD(max_depth, NUMBER, WHOLE, desc.max_depth, 0, DEPTH_MAX, NULL)                                                 \
     OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "bits of a colour channel")                         \
     OPTION(precision, CHOICE, CHOICE, desc.precision, 0, 0, precisions, "", "precision of hits and shadows")           \

@@ -483,13 +483,13 @@ paint "rde"'
     for wrong in '-f x' '-f 3-1' '-f 1,' '-f -3' '-f 1-5:0' '-s 0' '-e x' '-j 0' '-s 5 -e 4' '-f 1 -s 1' '--shard 0/2' \
         '--shard 3/2' '--shard 1' '-o x.jpg' '-o %s.png' '-o .png' '-o x' '--size 40' '--size 0x4' '--size 40x24x' \
         '--size 65536x1' '--samples 0' '--samples 1.5' '--samples nan' '--precision half' '--bits 9' '--transfer foo' \
-        '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--adaptive x' '--adaptive -1' '--adaptive 3.5' '--adaptive nan' '--passes foo' '--passes depth,' '--encode foo' '--clamp x' '--clamp -1' '--clamp nan' '--clamp 1e10' '--dpi x' '--dpi -1' '--dpi 1e7' '--colormap veridis' '-t 0' '-t x' '-t 1025' '--seed -1' \
+        '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--adaptive x' '--adaptive -1' '--adaptive 3.5' '--adaptive nan' '--passes foo' '--passes depth,' '--encode foo' '--clamp x' '--clamp -1' '--clamp nan' '--clamp 1e10' '--rays -1' '--rays 1.5' '--rays 65537' '--rays x' '--dpi x' '--dpi -1' '--dpi 1e7' '--colormap veridis' '-t 0' '-t x' '-t 1025' '--seed -1' \
         '--seed 1.5' '--reuse-memory x' '--repeat 0' '--repeat x' '--json=1' '--alpha=true' '--samples' '--fail 1'; do
         # shellcheck disable=SC2086
         exits 2 "wrong: $wrong" ten.lua $wrong
     done
     files "wrong options write nothing"
-    exits 0 "every option" --precision float --bits 16 --transfer linear ten.lua --rounding truncate --dither --clamp 2 --tone filmic --exposure -0.5 \
+    exits 0 "every option" --precision float --bits 16 --transfer linear ten.lua --rounding truncate --dither --clamp 2 --rays 3 --tone filmic --exposure -0.5 \
         --encode small --dpi 300 -t 2 --seed 5 --no-reuse --reuse-memory 64M --samples 4 --quiet --size 20x12 -f 1 -o q.png
     check "--quiet is quiet" test ! -s err
     exits 0 "the picture is as asked" compare q_0001.png q_0001.png --json
@@ -523,7 +523,7 @@ paint "rde"'
     exits 2 "wrong field" fields.lua
     says "wrong field" 'scene:render: width: whole number 1 \.\. 65535 expected, got -1'
     for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'tone="filmik"' 'exposure=-33' 'exposure="1"' 'adaptive=-0.1' 'adaptive=4' 'adaptive=true' 'precision=true' 'rounding="up"' \
-        'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'visibility="x"' 'clamp=-1' 'clamp="1"' 'clamp=0/0' 'clamp=1/0' 'dither=1' 'encode="x"' 'dpi=-1' 'dpi="300"' 'colormap=1' 'colormap="jet"' 'output="x.jpg"' 'output=3' '[1]=2'; do
+        'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'visibility="x"' 'clamp=-1' 'clamp="1"' 'clamp=0/0' 'clamp=1/0' 'rays=-1' 'rays=1.5' 'rays="2"' 'rays=65537' 'dither=1' 'encode="x"' 'dpi=-1' 'dpi="300"' 'colormap=1' 'colormap="jet"' 'output="x.jpg"' 'output=3' '[1]=2'; do
         script fields "local S = require 'scene' S.scene:render { $wrong }"
         exits 2 "wrong field $wrong" fields.lua
     done

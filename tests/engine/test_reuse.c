@@ -180,6 +180,7 @@ static const field render_fields[] = {
     R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
     R(tone.dither, FLAG, 0, 1),     R(clamp, NUMBER, 0, 2),
+    R(rays, WHOLE, 0, 3),
     R(region, REGION, 0, 0),        R(light_passes, FIXED, 0, 0), // see tests/lua for light passes
     R(derivatives, FIXED, 0, 0),    R(derivative_count, FIXED, 0, 0),
 #undef R

@@ -378,4 +378,31 @@ function tests.seeds_and_blocks()
 end
 
 tally.run(tests)
+-- ---- A limit of rays: the picture of a scene whose lights and surfaces have no more samples ---------------------------
+
+for _, kind in ipairs { "indirect", "ambient_occlusion", "neither" } do
+  local function shown(most, rays)
+    local function few(samples) return math.min(samples, most) end
+    local fields = {
+      camera = glint.camera { eye = { 0, 2, 7 }, at = { 0, 1, 0 }, fov = 45 }, ambient = 0.2, background = { 0.2, 0.3, 0.5 },
+      reflection_samples = few(7),
+      glint.disk_light { position = { 0, 5, 1 }, normal = { 0, -1, 0 }, radius = 1, samples = few(9), radiance = 2 },
+      glint.polygon_light { vertices = { { -2, 4, 3 }, { -1, 4, 3 }, { -1, 5, 3 } }, two_sided = true, samples = few(6), radiance = 3 },
+      glint.sphere_light { position = { 4, 4, 4 }, radius = 0.5, samples = few(2), intensity = 0.4 },
+      glint.sphere_light { position = { -4, 3, 4 }, radius = 0.5, samples = few(8), radiance = 2, color = { 1, 0.5, 0 } },
+      glint.point_light { position = { 4, 4, 4 }, intensity = 0.4 },
+      glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } },
+      glint.sphere { center = { -1.5, 1, 0 }, radius = 1,
+        material = glint.material { model = "cook_torrance", f0 = { 1, 0.77, 0.34 }, diffuse = 0, roughness = 0.4 } },
+      glint.box { min = { 0.5, 0, -1 }, max = { 2, 1.5, 0 } },
+    }
+    if kind ~= "neither" then fields[kind] = { samples = few(5), distance = kind == "ambient_occlusion" and 3 or nil } end
+    return glint.scene(fields):render { width = 40, height = 25, samples = 2, output = "none", rays = rays }:bytes()
+  end
+  local full = shown(math.huge)
+  check(shown(math.huge, 0) == full and shown(math.huge, 9) == full, "%s: 0 and 9 limit no rays", kind)
+  for most = 1, 8 do check(shown(math.huge, most) == shown(most), "%s: at most %d rays", kind, most) end
+  check(shown(math.huge, 1) ~= full and shown(math.huge, 3) ~= shown(math.huge, 2), "%s: fewer rays are seen", kind)
+end
+
 tally.finish()

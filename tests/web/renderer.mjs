@@ -26,13 +26,14 @@ async function test(name, run) {
 
 // A figure of 640 x 400 CSS pixels whose pictures take `fixed` ms and `sample` ms for each sample, on a clock that only
 // pictures move. steps: the limits of samples of its pictures at rest.
-// params: the script's parameters.
-function figure({ fixed, sample, density = 1, samples = 1, params }) {
+// params: the script's parameters. rays: the rays of a sample, which share its time evenly.
+function figure({ fixed, sample, density = 1, samples = 1, params, rays = 1 }) {
   const seen = [], sizesOfJob = [], clock = { time: 0, now: () => clock.time }
   let wake
   const picture = ({ width, height, samples: wanted = samples, ...rest }, done = wanted) => {
-    clock.time += fixed() + sample() * width * height * done
-    return { width, height, samples: done, ownSamples: wanted, pixelMs: sample() * width * height * done, ...rest }
+    const pixelMs = sample() * width * height * done * Math.min(1, (rest.rays ?? rays) / rays)
+    clock.time += fixed() + pixelMs
+    return { width, height, samples: done, ownSamples: wanted, pixelMs, ...rest }
   }
   const render = async options => {
     sizesOfJob.push(options.width)
@@ -49,6 +50,7 @@ function figure({ fixed, sample, density = 1, samples = 1, params }) {
   const next = () => new Promise(done => { wake = done })
   one.step = async n => { const shown = next(); renderer.ask({ set: { n } }); await shown; assert.equal(one.fail, undefined) }
   one.rest = async () => { while (!seen.length || seen.at(-1).coarse) await next() }
+  one.prepared = () => new Promise(done => setTimeout(done, 1)) // the pictures that are not shown
   // Moves a control through 40 steps. Returns the pictures shown.
   one.drag = async () => {
     seen.length = 0
@@ -172,6 +174,40 @@ await test("the first picture of each drag has the size of a picture whose rays 
     assert.equal(pictures[0].width, before)
     await one.rest()
     assert.equal(one.sizesOfJob.at(-1), pictures.at(-1).width, "another job renders the picture at rest")
+  }
+})
+
+await test("a figure with many rays sends fewer while a control moves, and all at rest", async () => {
+  for (const [sample, rays, width] of [[1e-4, undefined, 640], [8e-4, 2, 640], [5e-3, 1, 429]]) { // 115,000 samples fit
+    const one = figure({ fixed: () => 4, sample: () => sample, rays: 16, params: [{ name: "n", type: "number", min: 0, max: 40, value: 0 }] })
+    await one.step(0)
+    await one.rest()
+    for (let n = 0; n < 3; n++) {
+      await one.prepared()
+      for (const picture of await one.drag()) assert.deepEqual([picture.rays, picture.width], [rays, width])
+      await one.rest()
+      assert.deepEqual([one.seen.at(-1).rays, one.seen.at(-1).samples], [undefined, 4])
+    }
+  }
+})
+
+await test("other work of the machine changes the size of a drag's pictures at most once", async () => {
+  let seed = 1
+  const random = () => (seed = seed * 16807 % 2147483647) / 2147483647
+  for (const most of [2, 4]) { // one picture in three takes up to this time more
+    const load = () => random() < 1 / 3 ? 1 + most * random() : 1
+    const one = figure({ fixed: () => 8 * load(), sample: () => 9e-5 * load(), params: [{ name: "n", type: "number", min: 0, max: 40, value: 0 }] })
+    await one.step(0)
+    await one.rest()
+    await one.prepared()
+    let changes = 0
+    for (let n = 0; n < 20; n++) {
+      const found = sizes(await one.drag())
+      assert(found.length <= 2, `load ${most}: ${found}`)
+      changes += found.length - 1
+      await one.rest()
+    }
+    assert(changes <= 5, `load ${most}: ${changes} of 20 drags changed their size`)
   }
 })
 

@@ -3,18 +3,25 @@ import { load } from "./glint.mjs"
 import { written } from "./controls.js"
 
 const REST_MS = 150         // after this time without changes the picture gets its full size and samples
+const HOLD_MS = 500         // and after this time while the reader still holds a control
 const ANSWER_MS = 40        // time for a picture while a control moves
 const PIXELS_MS = 16        // of which its pixels get at least this, whatever the fixed part takes
 const FIRST_SCALE = 0.25    // size of the first picture, before any cost is known
 const STEP_MS = 1000        // a picture that takes longer appears in smaller sizes first
-const CHANGE_RATIO = 1.25   // a drag changes the size of its pictures if it is wrong by this factor,
-const CHANGE_MOST = 4       // at most by this factor, since a few pictures may be slow by chance,
-const SETTLED = 4           // after this number of pictures,
-const OFF = 3               // and again after this number of pictures that each took twice ANSWER_MS, or half of it,
-const CHANGES = 4           // at most this often
+const WHOLE = 0.85          // a picture that is nearly as large gets its full size
+const KEEP_RATIO = 1.5      // a drag keeps the size of the drag before it unless that is wrong by this factor
+const CHANGE_RATIO = 1.25   // within a drag, the size changes if it is wrong by this factor,
+const CHANGE_MOST = 4       // at most by this factor,
+const RECENT = 7            // judged by this number of pictures, which is also the number of measurements that count,
+const LATE = 1.25           // if all of them but one took longer than this part of ANSWER_MS, or less than
+const EARLY = 0.5           // this part
+const STUCK = 4             // two pictures that take longer than this part decide at once; after the only change only
+                            // RECENT pictures of this time change the size again
 const LEAST_WIDE = 160      // width of the smallest picture while a control moves, pixels,
 const LEAST_MS = 200        // unless it takes longer than this
-const RECENT = 5            // measurements that count
+const FEW_RAYS = [2, 1]     // rays of each kind while a control moves, if a picture of full size takes too long with all
+const CLEAR = 0.5           // the second number only if the first one makes a picture smaller than this part
+const NUDGE = 0.01          // change of a parameter that measures a drag before there is one, as a part of its range
 const WAIT_MS = 500         // shortest time that is shown as a line
 const SAMPLES = 4           // fewest samples of a pixel at rest
 const LETTERS = 12          // smallest size of letters, CSS pixels
@@ -54,8 +61,8 @@ export function wait(line, ms) {
   else if (!line.hidden) line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
 }
 
-// Returns the lower quartile, since other work of the machine slows some pictures down; of a few the median.
-const usual = list => [...list].sort((a, b) => a - b)[list.length - 1 >> (list.length < RECENT ? 1 : 2)]
+// Returns the second shortest of some times, of two the shorter: other work of the machine slows some pictures down.
+const usual = list => [...list].sort((a, b) => a - b)[Math.min(1, list.length - 1 >> 1)]
 
 // The cost of a picture: a fixed part, which has the script, the overlays and the page, and a part for each sample.
 export class Cost {
@@ -64,13 +71,13 @@ export class Cost {
   #isCold = true
 
   // Takes a picture that took `ms`, of which the engine needed `pixelMs` for its samples. isCold: it has little to reuse.
-  // Of cold pictures the quickest counts, since the browser still compiles the engine, and only until there is another.
-  add({ ms, pixelMs, samples, isCold }) {
+  // Cold pictures count only until there is another.
+  add({ ms, pixelMs, samples, isCold = false }) {
     if (isCold && !this.#isCold) return
-    const fixed = Math.max(0, ms - pixelMs), sample = pixelMs / samples, isFirst = !isCold && this.#isCold
+    if (this.#isCold && !isCold) this.#fixed = this.#sample = []
     this.#isCold = isCold
-    this.#fixed = isCold ? [Math.min(fixed, ...this.#fixed)] : [...isFirst ? [] : this.#fixed, fixed].slice(-RECENT)
-    this.#sample = isCold ? [Math.min(sample, ...this.#sample)] : [...isFirst ? [] : this.#sample, sample].slice(-RECENT)
+    this.#fixed = [...this.#fixed, Math.max(0, ms - pixelMs)].slice(-RECENT)
+    this.#sample = [...this.#sample, pixelMs / samples].slice(-RECENT)
   }
 
   get isKnown() { return this.#sample.length > 0 }
@@ -80,11 +87,20 @@ export class Cost {
   samplesIn(ms) { return Math.max(ms - usual(this.#fixed), PIXELS_MS) / Math.max(usual(this.#sample), 1e-9) }
 }
 
+// Returns values that differ a little from a request's, as if the reader moved the first control that has a range.
+// undefined: there is none.
+function nudged(params, { set }, count) {
+  const param = params?.find(({ type, choices, min, max }) => type === "number" && !choices && max > min)
+  if (!param) return undefined
+  const { name, min, max, whole } = param, value = set[name] ?? param.value, by = count * (whole ? 1 : NUDGE * (max - min))
+  return { ...set, [name]: value + by <= max ? value + by : Math.max(min, value - by) }
+}
+
 // Renders a job's pictures as the controls request them: one at a time, the newest request first. Each change is
-// answered by a picture of the best size for which there is time. A drag, a series of changes without a rest, keeps the
-// size of the drag before it or changes it once, and again if its pictures take far too long or leave half of the time. At
-// rest the picture gets its full size, in device pixels, and its samples, in steps; a change ends them. Another job renders
-// these pictures, so that the first one keeps what a drag can reuse.
+// answered by a picture of the best size for which there is time, with fewer rays to area lights and of rough surfaces if
+// there is none for all. A drag, a series of changes without a rest, keeps the size of the drag before it or changes it
+// once. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change ends them. Another
+// job renders these pictures, so that the first one keeps what a drag can reuse.
 //   page      returns the size of the picture in the page, CSS pixels: { width, height }
 //   size      returns the picture's own size if it may differ: a page that is too narrow shows it smaller
 //   density   returns the device's pixels per CSS pixel
@@ -94,16 +110,20 @@ export class Cost {
 export class Renderer {
   constructor(job, { page, size = page, density = () => globalThis.devicePixelRatio ?? 1, shown, failed, waits = () => {}, clock = performance }) {
     Object.assign(this, { job, page, size, density, shown, failed, waits, clock })
-    this.cost = new Cost()
+    this.cost = new Cost() // of pictures at rest
+    this.moving = new Cost() // of pictures while a control moves
     this.running = false
     this.next = null
-    this.drag = null // { scale, count, changes, slow, quick }; count: pictures so far, 0 for the first picture of all
+    this.drag = null // { scale, count, changes, times, cost }; count: pictures so far, 0 for the first picture of all
     this.scale = 0 // of the last picture of a drag
+    this.rays = {} // the limit of rays while a control moves, as an option of job.render()
     this.second = null // a promise of another job of the script, for the pictures at rest
   }
 
-  ask(request) {
+  // isHeld: the reader holds a control, and more changes may follow.
+  ask(request, isHeld = false) {
     this.next = request
+    this.isHeld = isHeld
     this.wake?.()
     this.abort?.abort()
     if (!this.running) this.run()
@@ -127,16 +147,17 @@ export class Renderer {
   }
 
   // Returns the scale at which a picture takes ANSWER_MS; a small picture may take longer.
-  #answerScale() {
-    if (!this.cost.isKnown) return FIRST_SCALE
-    const { width, height } = this.#sizes(1), scaleIn = ms => Math.sqrt(this.cost.samplesIn(ms) / (width * height))
-    return Math.min(1, Math.max(scaleIn(ANSWER_MS), Math.min(LEAST_WIDE / width, scaleIn(LEAST_MS))))
+  #answerScale(cost = this.moving.isKnown ? this.moving : this.cost) {
+    if (!cost.isKnown) return FIRST_SCALE
+    const { width, height } = this.#sizes(1), scaleIn = ms => Math.sqrt(cost.samplesIn(ms) / (width * height))
+    const scale = Math.max(scaleIn(ANSWER_MS), Math.min(LEAST_WIDE / width, scaleIn(LEAST_MS)))
+    return scale > WHOLE ? 1 : scale
   }
 
-  // Returns the scale of a drag's first picture: that of the last drag, whose results can be reused, if it is about right.
-  #firstScale() {
+  // Returns the scale of a drag's first picture: that of the last picture, whose results can be reused, if it is about right.
+  #firstScale(ratio) {
     const scale = this.#answerScale(), better = scale / this.scale
-    return Math.max(better, 1 / better) < CHANGE_RATIO ? this.scale : scale
+    return Math.max(better, 1 / better) < ratio ? this.scale : scale
   }
 
   async run() {
@@ -158,11 +179,11 @@ export class Renderer {
     this.running = false
   }
 
-  // Waits for REST_MS, or until there is another request. The first picture does not wait.
+  // Waits for REST_MS or HOLD_MS, or until there is another request. The first picture does not wait.
   #rest() {
     if (!this.drag.count) return
     return new Promise(done => {
-      const timer = setTimeout(done, REST_MS)
+      const timer = setTimeout(done, this.isHeld ? HOLD_MS : REST_MS)
       this.wake = () => { clearTimeout(timer); done() }
     })
   }
@@ -170,38 +191,64 @@ export class Renderer {
   // Shows a picture of the drag's size.
   async #answer(request) {
     const isFirst = !this.cost.isKnown
-    const drag = this.drag ??= { scale: this.#firstScale(), count: 0, changes: 0, slow: 0, quick: 0 }
+    if (!isFirst && !this.moving.isKnown && this.#answerScale() < 1) this.rays = { rays: FEW_RAYS[0] }
+    const drag = this.drag ??= { scale: this.#firstScale(KEEP_RATIO), count: 0, changes: 0, times: [], cost: new Cost() }
     if (!isFirst) drag.count++
-    const ms = await this.#picture(this.job, request, drag.scale, isFirst || drag.count === 1)
+    const ms = isFirst ? await this.#picture(this.job, request, drag.scale, this.cost)
+      : await this.#picture(this.job, { ...request, ...this.rays }, drag.scale, this.moving, { isCold: drag.count === 1 })
     this.scale = drag.scale
-    const time = this.#sizes(drag.scale).width > LEAST_WIDE ? ANSWER_MS : LEAST_MS
-    drag.slow = ms > 2 * time ? drag.slow + 1 : 0
-    drag.quick = ms < time / 2 ? drag.quick + 1 : 0
-    const better = this.#answerScale() / drag.scale
-    const isOff = better < 1 ? drag.slow >= OFF : drag.quick >= OFF
-    const isDue = drag.changes ? drag.changes < CHANGES && isOff : drag.count >= SETTLED
-    if (!isDue || Math.max(better, 1 / better) < CHANGE_RATIO) return
+    drag.times = [...drag.times, ms].slice(-RECENT)
+    if (!this.#isOff(drag)) return
+    const better = this.#answerScale(drag.cost.isKnown ? drag.cost : undefined) / drag.scale
+    if (Math.max(better, 1 / better) < CHANGE_RATIO) return
     drag.scale *= Math.min(CHANGE_MOST, Math.max(better, 1 / CHANGE_MOST))
     drag.changes++
-    drag.slow = drag.quick = 0
+    drag.times = []
+    drag.cost = new Cost()
   }
 
-  // Renders a picture of a drag's size, not shown, so that the first picture of the first drag can reuse its rays.
+  // Returns whether a drag's pictures took so long, or so little time, that they should have another size.
+  #isOff({ scale, changes, times }) {
+    const time = this.#sizes(scale).width > LEAST_WIDE ? ANSWER_MS : LEAST_MS
+    const all = [...times].sort((a, b) => a - b), isFull = all.length === RECENT
+    if (changes) return isFull && all[0] > STUCK * time
+    return all.length > 1 && all[0] > STUCK * time || isFull && (all[1] > LATE * time || all[RECENT - 2] < EARLY * time && scale < 1)
+  }
+
+  // Renders pictures as of a drag, not shown: measures them, so that the first drag begins with the right size and number
+  // of rays, and can reuse rays of that size.
   async #prepare(request) {
-    const abort = this.abort = new AbortController(), scale = this.#answerScale()
-    await this.job.render({ ...request, ...this.#sizes(scale), samples: 1, signal: abort.signal })
-    this.scale = scale
+    const abort = this.abort = new AbortController(), { params } = this.job
+    let count = 0
+    const render = async isCold => {
+      this.scale = this.#firstScale(CHANGE_RATIO)
+      const since = this.clock.now(), set = nudged(params, request, count++) ?? request.set
+      const image = await this.job.render({ ...request, set, ...this.rays, ...this.#sizes(this.scale), samples: 1, signal: abort.signal })
+      this.moving.add({ ms: this.clock.now() - since, pixelMs: image.pixelMs, samples: image.width * image.height, isCold })
+    }
+    this.rays = {}
+    await render(true)
+    if (!nudged(params, request, 0)) return
+    await render(false)
+    for (const rays of FEW_RAYS) {
+      if (this.#answerScale() >= (this.rays.rays ? CLEAR : 1)) break
+      this.rays = { rays }
+      this.moving = new Cost()
+      for (let i = 0; i < 2; i++) await render(false)
+    }
+    if (this.#firstScale(CHANGE_RATIO) !== this.scale) await render(false)
   }
 
   // Renders and shows a picture of one sample a pixel. Returns its time. A picture of the same values as the one before it
   // is reused and costs nothing, so it does not count.
-  async #picture(job, request, scale, isCold, signal) {
+  async #picture(job, request, scale, cost, { isCold, signal } = {}) {
     const since = this.clock.now(), sizes = this.#sizes(scale), values = JSON.stringify(request), repeats = values === this.values
     const image = await job.render({ ...request, ...sizes, samples: 1, signal })
     this.values = values
     this.shown(image, { coarse: true, ms: this.clock.now() - since })
     const ms = this.clock.now() - since
-    if (!repeats || isCold) this.cost.add({ ms, pixelMs: image.pixelMs, samples: image.width * image.height, isCold: isCold && image.casts !== 0 })
+    const taken = { ms, pixelMs: image.pixelMs, samples: image.width * image.height, isCold: isCold && image.casts !== 0 }
+    if (!repeats || cost === this.cost) for (const one of [cost, ...this.drag?.count ? [this.drag.cost] : []]) one.add(taken)
     return ms
   }
 
@@ -215,7 +262,7 @@ export class Renderer {
       let { scale } = this.drag
       for (scale *= 2; scale < 0.75 && one > STEP_MS && !this.next; scale *= 2) {
         this.waits(this.cost.of(pixels * scale * scale))
-        await this.#picture(job, request, scale, true, abort.signal)
+        await this.#picture(job, request, scale, this.cost, { signal: abort.signal })
       }
       this.drag = null
       if (this.next) return
@@ -224,7 +271,7 @@ export class Renderer {
       for await (const image of job.steps({ ...request, ...sizes, ...least, signal: abort.signal })) {
         if (image.error === undefined) {
           ms = this.clock.now() - since
-          this.cost.add({ ms, pixelMs: image.pixelMs, samples: pixels * image.samples, isCold: true })
+          this.cost.add({ ms, pixelMs: image.pixelMs, samples: pixels * image.samples })
         }
         const isLast = image.samples >= image.ownSamples
         this.shown(image, { coarse: !isLast, ms })

@@ -71,6 +71,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     if (!status)
         status = glint_check_whole("max_depth", desc->max_depth, 0, INT64_C(1) << 31, error);
     if (!status)
+        status = glint_check_whole("rays", desc->rays, 0, 65536, error);
+    if (!status)
         status = glint_check_range("clamp", desc->clamp, 0, 1e9, "number 0 .. 1e9", error);
     if (!status)
         status = glint_check_whole("seed", desc->seed, 0, INT64_C(1) << 53, error);

@@ -195,6 +195,9 @@ static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t 
     return plan->patterns ? plan->patterns->of[material].desc.diffuse : plan->materials[material].diffuse;
 }
 
+/// Returns how many of `samples` rays of a kind a sample of this frame sends.
+uint32_t glint_plan_rays(const glint_plan *plan, int64_t samples);
+
 /// Returns whether lights illuminate surfaces.
 static inline bool glint_plan_is_lit(const glint_plan *plan)
 {

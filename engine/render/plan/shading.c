@@ -116,6 +116,20 @@ static bool is_area(const glint_plan *plan, const glint_light_desc *desc)
     }
 }
 
+uint32_t glint_plan_rays(const glint_plan *plan, int64_t samples)
+{
+    const int64_t most = plan->desc.rays;
+    return (uint32_t)(most > 0 && most < samples ? most : samples);
+}
+
+/// Returns light number i of the scene with the samples that it gets in this frame.
+static glint_light_desc limited_light(const glint_plan *plan, const glint_scene *scene, size_t i)
+{
+    glint_light_desc desc = glint_scene_light(scene, i)->desc;
+    desc.samples = glint_plan_rays(plan, desc.samples);
+    return desc;
+}
+
 /// Returns the number of samples; one for a disk without an area.
 static uint32_t sample_count(const glint_plan *plan, const glint_light_desc *desc)
 {
@@ -250,11 +264,11 @@ static glint_status ensure_capacity(glint_plan *plan, const glint_scene *scene, 
 {
     double rows = 0, light_samples = 0;
     for (size_t i = 0; i < scene->lights.count; i++) {
-        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
-        rows += sample_count(plan, desc);
-        if (is_area(plan, desc))
-            light_samples += (double)sample_count(plan, desc) * glint_light_sample_sets(desc, plan->desc.samples);
-        else if (is_cap(plan, desc))
+        const glint_light_desc desc = limited_light(plan, scene, i);
+        rows += sample_count(plan, &desc);
+        if (is_area(plan, &desc))
+            light_samples += (double)sample_count(plan, &desc) * glint_light_sample_sets(&desc, plan->desc.samples);
+        else if (is_cap(plan, &desc))
             light_samples++;
     }
     if (fmax(rows, light_samples) > SAMPLES_MAX)
@@ -334,14 +348,14 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
     if (status)
         return status;
     for (size_t i = 0; i < scene->lights.count; i++) {
-        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        const glint_light_desc desc = limited_light(plan, scene, i);
         glint_plan_light light;
-        light_init(plan, &light, desc);
+        light_init(plan, &light, &desc);
         if (is_black(light.diffuse) && is_black(light.specular) && !plan->desc.derivative_count)
             continue; // lights of strength 0 can have derivatives, too
         light.source = (uint32_t)i;
         glossy_light = glossy_light || !is_black(light.specular);
-        light_samples += add_light(plan, &light, desc, plan->light_samples + light_samples);
+        light_samples += add_light(plan, &light, &desc, plan->light_samples + light_samples);
     }
     plan->powers = powers && glossy_light;
     plan->facets = facets && glossy_light;

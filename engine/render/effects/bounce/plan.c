@@ -210,7 +210,7 @@ glint_status glint_bounce_prepare(glint_plan *plan, const glint_plan_input *from
         glint_bounce_material *m = &plan->bouncing[i];
         bounce_material_init(m, plan, i, scene->reflection_samples > 0);
         if (glint_is_spreading(m))
-            plan->rough_samples = (uint32_t)scene->reflection_samples;
+            plan->rough_samples = glint_plan_rays(plan, scene->reflection_samples);
         plan->sharp = plan->sharp || glint_is_sharp(m);
         plan->mirrors = plan->mirrors || m->mirrors;
         plan->transmits = plan->transmits || m->transmits;

@@ -65,7 +65,7 @@ glint_status glint_indirect_prepare(glint_plan *plan, const glint_plan_input *fr
     indirect->rest = glint_alloc(plan->material_count, sizeof *indirect->rest);
     if (!indirect->rest)
         return glint_fail_nomem(error);
-    indirect->samples = (uint32_t)(indirect->is_sky ? scene->ambient_occlusion_samples : scene->indirect_samples);
+    indirect->samples = glint_plan_rays(plan, indirect->is_sky ? scene->ambient_occlusion_samples : scene->indirect_samples);
     indirect->bounces = indirect->is_sky ? 1 : (uint32_t)scene->indirect_bounces;
     indirect->distance = scene->ambient_occlusion_distance;
     for (uint32_t i = 0; i < plan->material_count; i++)
