@@ -41,11 +41,11 @@ static glint_status render_base(glint_renderer *renderer, const glint_plan *plan
     const double by[] = { desc->adaptive, desc->tone.curve, desc->tone.exposure };
     glint_renderer *base = renderer->base;
     if (memcmp(renderer->refined_by, by, sizeof by) != 0)
-        glint_pictures_clear(base);
+        glint_picture_forget(base);
     memcpy(renderer->refined_by, by, sizeof by);
     const glint_status status = glint_render_instant(base, plan->base, out, stats, error);
     if (status)
-        glint_pictures_clear(base);
+        glint_picture_forget(base);
     return status;
 }
 
@@ -58,7 +58,7 @@ static glint_status render_in_place(glint_renderer *renderer, const glint_plan *
 {
     glint_render_desc desc = plan->base->desc;
     glint_status status = GLINT_OK;
-    glint_pictures_clear(renderer->base);
+    glint_picture_forget(renderer->base);
     glint_reuse_clear(&renderer->base->reuse);
     *base = *image;
     base->film = NULL;

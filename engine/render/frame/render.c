@@ -83,7 +83,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     if (!renderer->shares)
         free(renderer->tiles);
     drop_spares(renderer);
-    glint_pictures_clear(renderer);
+    glint_picture_forget(renderer);
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         end_stage(renderer, id);
     glint_grids_clear(&renderer->own_grids);
@@ -208,7 +208,7 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
 static frame frame_of(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
                       const glint_tone_table *table)
 {
-    const glint_image *last = renderer->pictures[0].image;
+    const glint_image *last = renderer->last.image;
     return (frame) { .renderer = renderer,
                      .shared = { .plan = plan,
                                  .stages = glint_stages_for(renderer->stages, plan->desc.precision == GLINT_PRECISION_FLOAT),
@@ -305,7 +305,7 @@ glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_ren
 /// referenced, or it has another format.
 static glint_image *take_last(glint_renderer *renderer, const glint_plan *plan)
 {
-    glint_picture *last = &renderer->pictures[0];
+    glint_picture *last = &renderer->last;
     for (int i = 0; i < GLINT_SPARE_IMAGES && last->image && !plan->base; i++)
         if (renderer->spare[i] == last->image && has_format(last->image, &plan->desc) && atomic_load(&last->image->references) == 2) {
             last->key = (glint_key) { 0 }; // the picture is about to change

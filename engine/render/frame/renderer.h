@@ -18,16 +18,11 @@
 /// each time.
 #define GLINT_SPARE_IMAGES 4
 
-#define GLINT_PICTURES_MAX 33 ///< largest number of stored pictures
-
-/// A picture that is returned again when a frame has the same inputs.
+/// A picture that is returned again when the next frame has the same inputs.
 typedef struct glint_picture {
     glint_image *image; ///< a reference, owned; NULL: none
     glint_key key;
     glint_frame_stats stats;
-    double cost; ///< the number of rays per byte that the plan expects
-    double worth; ///< `cost` plus the value of `picture_floor` when the picture was last returned; the picture of
-        ///< least worth is dropped first
 } glint_picture;
 
 struct glint_renderer {
@@ -43,9 +38,7 @@ struct glint_renderer {
     void *own[GLINT_STAGE_COUNT]; ///< memory of each stage that has `begin`; NULL: not needed in the last frame
     double cast_ms; ///< time of finding hits before the tiles of the frame
     glint_grids own_grids, *grids; ///< a renderer of bases uses the grids of the frame's renderer
-    glint_picture pictures[GLINT_PICTURES_MAX]; ///< the last frame's picture; stored pictures
-    double picture_floor; ///< worth of the last dropped picture; it rises, so that unused pictures age
-    glint_recent recent; ///< keys of the last pictures
+    glint_picture last; ///< the last frame's picture
     /// Earlier pictures, whose memory is reused when there is no other reference.
     glint_image *spare[GLINT_SPARE_IMAGES];
     glint_refine own_refine, *refine; ///< a renderer of bases uses the data of the frame's renderer
@@ -73,11 +66,11 @@ glint_status glint_renderer_take_image(glint_renderer *renderer, const glint_ren
 glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                                          const glint_tone_table *table, glint_frame_stats *stats, glint_error *error);
 
-/// pictures.c: returns an earlier picture if this frame's would be the same. Returns false if there is none.
+/// pictures.c: returns the last picture if this frame's would be the same. Returns false if it would not.
 bool glint_picture_give(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats);
 /// Stores the picture as the last one, if its image is one of the spare images.
 void glint_picture_remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats);
-void glint_pictures_clear(glint_renderer *renderer);
+void glint_picture_forget(glint_renderer *renderer);
 
 /// stats.c: collects the counts of a frame's tiles. wall_ms: from the first tile to the last.
 void glint_renderer_collect(const glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, double wall_ms,

@@ -21,7 +21,6 @@ void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget)
 
 void glint_reuse_clear(glint_reuse *reuse)
 {
-    glint_earlier_clear(reuse);
     while (reuse->chunk) {
         void *before = *(void **)reuse->chunk;
         free(reuse->chunk);
@@ -83,14 +82,17 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         make_slots(reuse, plan, tile_count, lights);
     }
     const bool is_eager = reuse->is_eager && !plan->base && !plan->is_base;
-    reuse->caches_cast = glint_earlier_find_tiles(reuse, plan->keys[GLINT_STAGE_CAST]) || is_eager;
+    reuse->caches_cast = is_eager || glint_key_equal(reuse->cast, plan->keys[GLINT_STAGE_CAST]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
     reuse->caches_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
     reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
     glint_splits_begin(&reuse->splits, plan);
-    reuse->caches_view = is_eager || reuse->cast_recurs || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_MICROFACET_VIEW]);
+    reuse->caches_view = is_eager || glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_MICROFACET_VIEW]);
     reuse->view = plan->keys[GLINT_STAGE_MICROFACET_VIEW];
-    glint_earlier_lights(reuse, plan);
+    for (uint32_t i = 0; i < reuse->light_count; i++) {
+        reuse->caches_light[i] = glint_key_equal(reuse->light[i], plan->lights[i].key);
+        reuse->light[i] = plan->lights[i].key;
+    }
 }
 
 bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan)

@@ -1,9 +1,9 @@
 /// The cache of a renderer, so that a frame runs only the stages whose inputs changed. Internal.
 ///
 /// Every stage has a key of exactly the data that it reads (plan/keys.c). The result of a stage is cached per tile
-/// once its key occurs again, in the last frame or in one of the frames before: a stage that differs in every frame
-/// is not worth the memory traffic. A cached result is used if its key equals the plan's key. So a frame with reuse
-/// has the same bits as a frame without reuse.
+/// once the last frame had the same key: a stage that differs in every frame is not worth the memory traffic. A
+/// cached result is used if its key equals the plan's key. So a frame with reuse has the same bits as a frame without
+/// reuse.
 ///
 /// Each tile also has a key of everything its pixels depend on: only the materials that it shows and the lights that
 /// reach it, without the highlight of a material if none is visible. If this key equals the key of the last frame,
@@ -75,38 +75,6 @@ typedef struct glint_cached_position {
     uint32_t at; ///< index in the geometry's table; GLINT_MISS: not there, because an equal primitive comes first
 } glint_cached_position;
 
-#define GLINT_EARLIER_MAX 64 ///< largest number of earlier results stored for each light
-#define GLINT_EARLIER_TILES 8 ///< largest number of earlier results stored for whole tiles
-
-/// The keys of recent frames, each different from the key of the frame before it.
-typedef struct glint_recent {
-    glint_key keys[GLINT_EARLIER_MAX];
-    size_t next;
-} glint_recent;
-
-/// The lights of all tiles, each as it was in some earlier frame.
-typedef struct glint_earlier_set {
-    glint_cached_light *lights; ///< owned: the lights of one tile after the other; NULL: not allocated yet
-    glint_key held[GLINT_CACHED_LIGHTS]; ///< key of each light's results; all zero: unused
-    uint64_t used[GLINT_CACHED_LIGHTS]; ///< when each light's results were set aside
-} glint_earlier_set;
-
-/// All tiles as they were in an earlier frame.
-typedef struct glint_earlier_tiles {
-    glint_cached_tile *tiles; ///< owned; NULL: not allocated yet
-    glint_key cast, light[GLINT_CACHED_LIGHTS]; ///< as in glint_reuse
-    bool light_recurs[GLINT_CACHED_LIGHTS];
-    uint64_t used; ///< when the tiles were set aside
-} glint_earlier_tiles;
-
-/// The stored results of frames before the last, see reuse/earlier.c.
-typedef struct glint_earlier {
-    uint64_t frame; ///< exchanges so far
-    glint_recent casts, lights[GLINT_CACHED_LIGHTS];
-    glint_earlier_set sets[GLINT_EARLIER_MAX];
-    glint_earlier_tiles tiles[GLINT_EARLIER_TILES];
-} glint_earlier;
-
 typedef struct glint_reuse {
     bool on;
     bool is_eager; ///< hits are cached in the first frame with their key
@@ -124,8 +92,6 @@ typedef struct glint_reuse {
     size_t tile_count;
     uint32_t light_count; ///< number of lights that each tile has slots for
     glint_key cast, pattern, view, light[GLINT_CACHED_LIGHTS]; ///< keys of the last frame
-    bool cast_recurs, light_recurs[GLINT_CACHED_LIGHTS]; ///< whether an earlier frame had the same key
-    glint_earlier *earlier; ///< owned; NULL: nothing
     glint_splits splits;
     glint_key where; ///< hash of the positions of surfaces in the last frame
     glint_cached_position *positions; ///< the positions of primitives, by id; owned; NULL: there were too many
@@ -133,7 +99,7 @@ typedef struct glint_reuse {
     /// Number of coming frames that do not record positions; length of the last such pause
     uint32_t carry_wait, carry_pause;
     double scale; ///< scale of the geometry's table when the results were computed
-    // results with a key seen before, which this frame caches
+    // results with the same key as in the last frame, which this frame caches
     bool caches_cast, caches_pattern, caches_view, caches_light[GLINT_CACHED_LIGHTS];
 } glint_reuse;
 
@@ -152,16 +118,6 @@ void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
 /// keys to results that cannot have changed: in the tiles, and in the `film` of pictures of the same size (NULL
 /// entries are skipped). The geometry must be arranged.
 void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count);
-
-/// Returns whether a key is among the last `size` keys (at most GLINT_EARLIER_MAX), and adds the key to them.
-bool glint_recent_has(glint_recent *recent, size_t size, glint_key key);
-
-/// reuse/earlier.c, for glint_reuse_begin: looks among earlier frames for tiles with the frame's hits, and takes them
-/// together with their lights' results and keys. Returns whether hits are cached.
-bool glint_earlier_find_tiles(glint_reuse *reuse, glint_key key);
-/// Does the same for each light: fills in the light's key and whether the light's results are cached.
-void glint_earlier_lights(glint_reuse *reuse, const glint_plan *plan);
-void glint_earlier_clear(glint_reuse *reuse);
 
 /// Returns whether the tile's pixels may depend on surfaces that its primary rays do not hit: through mirrors,
 /// transparent surfaces, indirect light, or light computed at points outside the tile.

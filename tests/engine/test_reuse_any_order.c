@@ -1,7 +1,6 @@
-/// Results of frames before the last one. Lights and cameras that cycle through positions run no stage again.
-/// Whatever returns, in any order, with little or much memory, each frame equals the same frame rendered afresh.
+/// Lights, cameras, colours and shapes that return to what they were, in any order, with little or much memory: each
+/// frame equals the same frame rendered afresh.
 #include "engine/glint.h"
-#include "engine/glint_inspect.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +12,7 @@
 
 #include "tests/engine/cases/step.h"
 
-enum { LIGHTS = 2, CROWD = 400 }; // CROWD: number of spheres behind the eye, so that caching lights is worthwhile
+enum { LIGHTS = 2, CROWD = 400 }; // CROWD: number of spheres behind the eye
 
 typedef struct stand {
     glint_scene *scene;
@@ -23,7 +22,6 @@ typedef struct stand {
     glint_light *lights[LIGHTS];
     glint_renderer *renderers[2]; ///< one renderer that reuses results, and one that does not
     glint_render_desc render;
-    glint_frame_stats stats; ///< the statistics of the last frame
 } stand;
 
 static uint64_t state;
@@ -132,13 +130,13 @@ static void set_ball(const stand *s, double x)
 }
 
 /// Renders the current scene with both renderers and compares every pixel.
-static void check(stand *s, int frame)
+static void check(const stand *s, int frame)
 {
     glint_plan *plan;
     glint_image *image[2];
     assert_int_equal(glint_plan_create(s->scene, &s->render, &plan, NULL), GLINT_OK);
     for (int i = 0; i < 2; i++)
-        assert_int_equal(glint_render(s->renderers[i], plan, &image[i], i ? NULL : &s->stats, NULL), GLINT_OK);
+        assert_int_equal(glint_render(s->renderers[i], plan, &image[i], NULL, NULL), GLINT_OK);
     for (int y = 0; y < s->render.height; y++)
         for (int x = 0; x < s->render.width; x++) {
             float p[3], q[3];
@@ -150,128 +148,6 @@ static void check(stand *s, int frame)
     for (int i = 0; i < 2; i++)
         glint_image_release(image[i]);
     glint_plan_destroy(plan);
-}
-
-/// Returns the share of the tiles whose results for a stage came from an earlier frame.
-static double reused(const stand *s, const char *stage)
-{
-    for (int i = 0; i < s->stats.stage_count; i++)
-        if (strcmp(s->stats.stage_name[i], stage) == 0)
-            return s->stats.stage_reused[i];
-    fail_msg("no stage %s", stage);
-    return 0;
-}
-
-static void a_lamp_that_goes_around(void **unused)
-{
-    (void)unused;
-    stand s;
-    make_stand(&s, 0);
-    for (int frame = 0; frame < 28; frame++) {
-        set_lamp(&s, 0, frame % 7 - 3);
-        set_color(&s, 0.01 * frame);
-        check(&s, frame);
-        if (frame >= 14) { // the first round has no cached results, the second round has them
-            assert_true(reused(&s, "light") == 1);
-            assert_true(reused(&s, "occlude") == 1);
-        }
-    }
-    free_stand(&s);
-}
-
-static void two_lamps_each_in_its_turn(void **unused)
-{
-    (void)unused;
-    stand s;
-    make_stand(&s, 0);
-    for (int frame = 0; frame < 60; frame++) {
-        set_lamp(&s, 0, frame % 3);
-        set_lamp(&s, 1, frame % 5);
-        set_color(&s, 0.01 * frame);
-        check(&s, frame);
-        assert_true(frame < 10 || reused(&s, "light") == 1);
-    }
-    free_stand(&s);
-}
-
-static void cameras_in_turn(void **unused)
-{
-    (void)unused;
-    stand s;
-    make_stand(&s, 0);
-    for (int frame = 0; frame < 20; frame++) {
-        set_eye(&s, frame % 2);
-        set_color(&s, 0.01 * frame);
-        check(&s, frame);
-        if (frame >= 4) {
-            assert_true(reused(&s, "cast") == 1);
-            assert_true(reused(&s, "light") == 1);
-        }
-    }
-    free_stand(&s);
-}
-
-static void pictures_that_come_back(void **unused)
-{
-    (void)unused;
-    stand s;
-    make_stand(&s, 0);
-    for (int frame = 0; frame < 40; frame++) {
-        set_lamp(&s, 0, frame % 5);
-        set_color(&s, 0.1 * (frame % 10));
-        check(&s, frame);
-        assert_true(frame < 20 || reused(&s, "shade") == 1);
-    }
-    free_stand(&s);
-}
-
-/// Renders the current scene. Returns whether every stage was reused.
-static bool is_given(stand *s)
-{
-    glint_plan *plan;
-    glint_image *image;
-    bool given = true;
-    assert_int_equal(glint_plan_create(s->scene, &s->render, &plan, NULL), GLINT_OK);
-    assert_int_equal(glint_render(s->renderers[0], plan, &image, &s->stats, NULL), GLINT_OK);
-    for (int i = 0; i < s->stats.stage_count; i++)
-        given = given && s->stats.stage_reused[i] == 1;
-    glint_image_release(image);
-    glint_plan_destroy(plan);
-    return given;
-}
-
-/// Eighty pictures of 400 x 300 pixels with one sample, more than fit in the cache, do not evict a small picture with
-/// 16 samples, which costs more rays per byte.
-static void dear_pictures_stay(void **unused)
-{
-    (void)unused;
-    stand s;
-    make_stand(&s, (size_t)512 << 20);
-    s.render.samples = 16;
-    for (int again = 0; again < 2; again++) { // the second time, the picture is cached
-        set_color(&s, 0.8);
-        is_given(&s);
-        set_color(&s, 0.9);
-        is_given(&s);
-    }
-    for (int cheap = 0; cheap < 40; cheap++) {
-        s.render.width = 400, s.render.height = 300, s.render.samples = 1;
-        for (int again = 0; again < 2; again++) {
-            set_color(&s, 0.01 * cheap);
-            is_given(&s);
-            set_color(&s, 0.01 * cheap + 0.005);
-            is_given(&s);
-        }
-    }
-    s.render.width = 100, s.render.height = 80, s.render.samples = 16;
-    set_color(&s, 0.8);
-    assert_true(is_given(&s));
-    s.render.width = 400, s.render.height = 300, s.render.samples = 1;
-    set_color(&s, 0);
-    assert_false(is_given(&s));
-    set_color(&s, 0.01 * 39);
-    assert_true(is_given(&s));
-    free_stand(&s);
 }
 
 /// Sets one property to one of a few values.
@@ -367,11 +243,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_that_is_held),
-        cmocka_unit_test(a_lamp_that_goes_around),
-        cmocka_unit_test(two_lamps_each_in_its_turn),
-        cmocka_unit_test(cameras_in_turn),
-        cmocka_unit_test(pictures_that_come_back),
-        cmocka_unit_test(dear_pictures_stay),
         cmocka_unit_test(frames_in_any_order),
         cmocka_unit_test(frames_in_any_order_with_little_memory),
     };
