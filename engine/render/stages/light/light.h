@@ -260,32 +260,29 @@ INNER void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned rest,
     }
 }
 
-/// Loads the points of the lanes from i on and, if `glossy` is set, the rays that hit them.
-INNER void R(load_points)(const glint_light_args *args, R(group_cursor) cursor, int i, const bool glossy,
-                          R(lit_points) * p)
+/// Loads the points of the lanes from i on and the rays that hit them.
+INNER void R(load_points)(const glint_light_args *args, R(group_cursor) cursor, int i, R(lit_points) * p)
 {
     const size_t at = (size_t)cursor.g * GLINT_GROUP;
     const R(group_directions) directions = R(directions_of)(args->camera, cursor.x, cursor.y);
     for (int j = 0; j < LIT_PARTS; j++) {
         R(load3)(args->point, at + (size_t)(i + j * VR), p->point[j]);
         R(load3)(args->normal, at + (size_t)(i + j * VR), p->normal[j]);
-        if (!glossy)
-            continue;
         R(load_direction)(directions, args->direction, at, i + j * VR, p->direction[j]);
         p->a[j] = DOT(p->direction[j], p->direction[j]);
         p->nv[j] = -DOT(p->normal[j], p->direction[j]);
     }
 }
 
-/// Computes all lights at the points of the lanes from i on. Constants: kind, glossy.
-INNER void R(light_points)(const glint_light_args *args, const int kind, const bool glossy,
-                           const R(light_sample_set) * samples, const R(gloss) * gloss, R(group_cursor) cursor, int i,
-                           unsigned open, unsigned lit[], vf brightest[])
+/// Computes all lights at the points of the lanes from i on. `kind` is a constant.
+INNER void R(light_points)(const glint_light_args *args, const int kind, const R(light_sample_set) * samples,
+                           const R(gloss) * gloss, R(group_cursor) cursor, int i, unsigned open, unsigned lit[],
+                           vf brightest[])
 {
     R(lit_points) p;
-    R(load_points)(args, cursor, i, glossy, &p);
+    R(load_points)(args, cursor, i, &p);
     for (uint32_t s = 0; s < args->sample_count; s++) {
-        const R(lit_lanes) lanes = R(light_lanes)(args, kind, glossy, s, samples, gloss, &p, i, open >> i & LIT_LANES);
+        const R(lit_lanes) lanes = R(light_lanes)(args, kind, true, s, samples, gloss, &p, i, open >> i & LIT_LANES);
         if (!lanes.lit)
             continue;
         R(store_lit)(args, s, (size_t)cursor.g * GLINT_GROUP + (size_t)i, &lanes);
@@ -308,10 +305,7 @@ INNER void R(light_group)(const glint_light_args *args, const int kind, R(light_
     if (open)
         R(sort_gloss)(args, at, open, gloss);
     for (int i = 0; open && i < GLINT_GROUP; i += VF)
-        if ((gloss->phong | gloss->blinn) >> i & LIT_LANES)
-            R(light_points)(args, kind, true, samples, gloss, cursor, i, open, lit, brightest);
-        else
-            R(light_points)(args, kind, false, samples, gloss, cursor, i, open, lit, brightest);
+        R(light_points)(args, kind, samples, gloss, cursor, i, open, lit, brightest);
     for (uint32_t s = 0; s < args->sample_count; s++)
         R(end_lit)(args, s, cursor.g, lit[s]);
 }

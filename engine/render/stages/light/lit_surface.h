@@ -47,7 +47,7 @@ INNER unsigned R(put_part)(R(lit_call) * call, const bool mixed, const bool norm
 }
 
 /// Processes a group that shows one solid, one plane, or one sphere near the eye. Constants: mixed, normals, kind;
-/// glossy: the material has highlights.
+/// glossy: the material may have highlights.
 INNER void R(light_vectors)(R(lit_call) * call, R(seen_slot) * slot, const bool mixed, const bool normals,
                             const glint_prim_kind kind, const bool glossy, R(group_cursor) cursor)
 {
@@ -76,11 +76,11 @@ INNER void R(light_vectors)(R(lit_call) * call, R(seen_slot) * slot, const bool 
     call->walk.any_back = call->walk.any_back || back;
 }
 
-/// Does the same for a material with or without highlights.
+/// Does the same for a material with or without highlights. Only the commonest call has a copy without highlights.
 INNER void R(light_whole)(R(lit_call) * call, R(seen_slot) * slot, const bool mixed, const bool normals,
                           const glint_prim_kind kind, R(group_cursor) cursor)
 {
-    if (call->gloss.phong | call->gloss.blinn)
+    if (normals || (call->gloss.phong | call->gloss.blinn))
         R(light_vectors)(call, slot, mixed, normals, kind, true, cursor);
     else
         R(light_vectors)(call, slot, mixed, normals, kind, false, cursor);
@@ -116,6 +116,16 @@ INNER bool R(try_whole)(R(lit_call) * call, const bool mixed, const bool normals
     return true;
 }
 
+/// Computes the light of a group whose points and normals are stored, and returns the group's brightest highlight. Not
+/// inlined: few groups come here.
+static __attribute__((noinline)) vf R(light_stored)(const glint_light_args *light, R(gloss) * gloss,
+                                                    R(group_cursor) cursor)
+{
+    vf brightest = f_set(GLINT_NO_SPECULAR);
+    R(light_group)(light, LIGHT_PLAIN, NULL, gloss, cursor, &brightest);
+    return brightest;
+}
+
 /// Processes all groups of a call. Constants: mixed, normals.
 INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_args *light, const bool mixed,
                            const bool normals)
@@ -131,7 +141,7 @@ INNER void R(lit_surfaces)(const glint_surface_args *surface, const glint_light_
             light->lit[0][g] = 0;
         } else if (!R(try_whole)(&call, mixed, normals, cursor)) {
             R(surface_group)(surface, &call.walk, &call.box, cursor, mixed ? R(MIXED) : R(BALLS_AND_PLANES));
-            R(light_group)(light, LIGHT_PLAIN, NULL, &call.gloss, cursor, &call.brightest);
+            call.brightest = f_max(call.brightest, R(light_stored)(light, &call.gloss, cursor));
             call.material = GLINT_MISS;
         }
     }

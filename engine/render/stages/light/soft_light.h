@@ -49,7 +49,7 @@ INNER R(soft_sums) R(add_samples)(const R(soft_call) * call, const int kind, con
     const glint_light_args *args = call->args->light;
     R(soft_sums) sums = { f_set(0), f_set(0), 0 };
     R(lit_points) p;
-    R(load_points)(args, cursor, i, glossy, &p);
+    R(load_points)(args, cursor, i, &p);
     for (uint32_t s = 0; s < args->sample_count; s++) {
         const unsigned open = call->light.unoccluded[s] >> i & LIT_LANES;
         const R(lit_lanes) lanes =
