@@ -42,7 +42,7 @@ endif
 NPM         := $(BUILD)/npm
 PAGES_SRC   := $(wildcard bindings/web/pages/*.js bindings/web/pages/*.mjs)
 COURSE      := $(wildcard scripts/course/*.lua)
-WEB_PAGES   := $(addprefix $(WEB)/,glint.mjs worker.mjs package.json LICENSE glint-figure.js glint-disk.js playground.js publish.js glint.wasm.gz glint.ttf glint.ttf.gz site.css index.html \
+WEB_PAGES   := $(addprefix $(WEB)/,glint.mjs worker.mjs package.json LICENSE glint-figure.js glint-disk.js playground.js editor.js publish.js glint.wasm.gz glint.ttf glint.ttf.gz site.css index.html \
                   figure.html course.html \
                   examples/index.json examples/moving_light.png $(patsubst scripts/%,%,$(COURSE) $(COURSE:.lua=.png)))
 
@@ -69,12 +69,12 @@ $(addprefix $(NPM)/,glint.wasm.gz glint.ttf.gz): $(NPM)/%: $(WEB)/%
 
 $(WEB)/glint.mjs: BUNDLE := --bundle --external:node:*
 $(WEB)/worker.mjs: BUNDLE :=
-$(addprefix $(WEB)/,glint-figure.js playground.js): BUNDLE := --bundle --external:./glint.mjs
+$(addprefix $(WEB)/,glint-figure.js playground.js editor.js): BUNDLE := --bundle --external:./glint.mjs --external:./editor.js
 $(WEB)/publish.js: BUNDLE := --bundle --external:node:* --loader:.txt=text
 $(addprefix $(WEB)/,publish.js glint-disk.js): $(NPM)/worker.txt
 $(WEB)/glint-disk.js: BUNDLE := --bundle --external:node:* --loader:.txt=text --loader:.gz=base64 --format=iife --log-override:empty-import-meta=silent
 $(WEB)/glint-disk.js: $(NPM)/glint.wasm.gz $(NPM)/glint.ttf.gz
-$(addprefix $(WEB)/,glint.mjs worker.mjs glint-figure.js playground.js publish.js glint-disk.js): $(WEB)/%: $(NPM)/sources
+$(addprefix $(WEB)/,glint.mjs worker.mjs glint-figure.js playground.js editor.js publish.js glint-disk.js): $(WEB)/%: $(NPM)/sources
 	$(call say,BUNDLE)
 	$(Q)cd $(NPM) && node_modules/.bin/esbuild $* --format=esm $(BUNDLE) --minify --log-level=warning --outfile=$(CURDIR)/$@
 

@@ -124,6 +124,11 @@ async function playground() {
   console.log(`playground: full picture after ${Date.now() - start} ms`)
   await shows(page, canvasOf(page), native("moving_light.lua", "--size", "640x360", "-f", "1", ...AT_REST), "playground: the first picture")
 
+  await page.locator(".cm-line").first().waitFor()
+  const loaded = await page.evaluate(() => performance.getEntriesByType("resource").sort((a, b) => a.startTime - b.startTime).map(one => one.name.split("/").pop()))
+  check(["glint.wasm", "moving_light.lua", "worker.mjs"].every(name => loaded.indexOf("editor.js") > loaded.indexOf(name)), `playground: the editor comes last: ${loaded}`)
+  check((await page.locator(".cm-content").innerText()).includes("glint.animation"), "playground: the editor has the script")
+
   const slider = page.getByLabel("radius")
   await slider.focus()
   await page.keyboard.press("End")

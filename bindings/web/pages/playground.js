@@ -1,11 +1,4 @@
 // The playground: a script on one side, its picture on the other.
-import { basicSetup, EditorView } from "codemirror"
-import { keymap } from "@codemirror/view"
-import { indentWithTab } from "@codemirror/commands"
-import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language"
-import { lua } from "@codemirror/legacy-modes/mode/lua"
-import { setDiagnostics } from "@codemirror/lint"
-import { tags } from "@lezer/highlight"
 import { control, controlStyle, ordered } from "./controls.js"
 import { Gestures, gestureStyle, orbitOf, STILL } from "./gestures.js"
 import { loadWithFont, quality, Renderer, show, wait } from "./renderer.js"
@@ -21,53 +14,46 @@ let values = {}, frame = 1, playing = false, turning, due = 0
 
 // ---- The editor ----
 
-const theme = EditorView.theme({
-  "&": { color: "var(--text)", backgroundColor: "var(--paper)" },
-  ".cm-content": { caretColor: "var(--text)" },
-  ".cm-gutters": { backgroundColor: "var(--panel)", color: "var(--quiet)", border: "0" },
-  ".cm-activeLine, .cm-activeLineGutter": { backgroundColor: "color-mix(in srgb, var(--accent) 8%, transparent)" },
-})
-const colors = HighlightStyle.define([
-  { tag: tags.comment, color: "var(--quiet)" },
-  { tag: tags.keyword, color: "var(--keyword)" },
-  { tag: [tags.string, tags.number, tags.atom], color: "var(--value)" },
-])
-let typing
-const editor = new EditorView({
-  parent: get("editor"),
-  extensions: [
-    basicSetup, keymap.of([indentWithTab]), StreamLanguage.define(lua), syntaxHighlighting(colors), theme,
-    EditorView.contentAttributes.of({ "aria-label": "Lua script" }),
-    EditorView.updateListener.of(update => {
-      if (!update.docChanged) return
-      clearTimeout(typing)
-      typing = setTimeout(run, TYPING_MS)
-    }),
-  ],
-})
-const script = () => editor.state.doc.toString()
+// The script in the editor's place until the editor is loaded, with the members of an Editor.
+const plain = { get text() { return get("script").textContent }, set text(text) { get("script").textContent = text }, mark() {} }
+let editor = plain, loading, typing, marked = []
+const script = () => editor.text
+
+// Loads the editor. Only the first picture or error calls this, because the editor would delay them.
+async function loadEditor() {
+  const { Editor } = await import("./editor.js")
+  editor = new Editor(get("editor"), editor.text, () => {
+    clearTimeout(typing)
+    typing = setTimeout(run, TYPING_MS)
+  })
+  editor.mark(...marked)
+}
 
 function setScript(text) {
-  editor.dispatch({ changes: { from: 0, to: editor.state.doc.length, insert: text } })
+  editor.text = text
   clearTimeout(typing)
   return run()
 }
 
 // ---- Errors ----
 
+// Marks a line of the script with a message; without a message, removes the mark.
+function mark(...line) {
+  marked = line
+  editor.mark(...marked)
+  loading ??= loadEditor().catch(showError)
+}
+
 function showError(error) {
   get("error").textContent = error.message
   get("error").hidden = false
   get("state").textContent = "error"
-  const line = error.file && error.file !== name ? 0 : error.line
-  if (!(line >= 1 && line <= editor.state.doc.lines)) return
-  const { from, to } = editor.state.doc.line(line)
-  editor.dispatch(setDiagnostics(editor.state, [{ from, to, severity: "error", message: error.message }]))
+  mark(error.file && error.file !== name ? 0 : error.line, error.message)
 }
 
 function clearError() {
   get("error").hidden = true
-  editor.dispatch(setDiagnostics(editor.state, []))
+  mark()
 }
 
 // ---- Running the script ----
@@ -85,7 +71,7 @@ async function run() {
     frame = Math.min(frame, job.frames)
     values = Object.fromEntries(Object.entries(values).filter(([key]) => job.params.some(param => param.name === key)))
     renderer = new Renderer(job, { page, size, shown, failed: showError, waits: ms => wait(get("wait"), ms) })
-    clearError()
+    get("error").hidden = true
     showControls()
     showPlayer()
     ask(false)
