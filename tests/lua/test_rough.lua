@@ -250,6 +250,28 @@ function tests.fields()
   check(ball(gold, { background = 1, reflection_samples = 64 })(31, "mirror") == half and half > 0.3, "a pattern of the highlight weighs what facets reflect")
 end
 
+-- Without samples for them, paths of indirect light end at rough glass as at a black ball.
+function tests.paths_end_at_rough_glass_without_samples()
+  local function light(material)
+    return glint.scene {
+      indirect = { samples = 8, bounces = 3 }, reflection_samples = 0, background = { 0.5, 0.7, 1 },
+      camera = glint.camera { eye = { 0, 3, 8 }, at = { 0, 0.5, 0 }, fov = 40 },
+      glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.8, specular = 0 } },
+      glint.plane { point = { 0, 0, -2 }, normal = { 0, 0, 1 }, material = glint.material { diffuse = 0.8, specular = 0 } },
+      glint.sphere { center = { 0, 1, 0 }, radius = 1, material = material } }
+      :render { width = 64, height = 48, samples = 2, passes = { "indirect" } }:bytes "indirect"
+  end
+  local black <const> = light(glint.material { diffuse = 0, specular = 0 })
+  for _, model in ipairs { "phong", "cook_torrance" } do
+    for _, fresnel in ipairs { false, true } do
+      for _, mirror in ipairs { 0, 0.5 } do
+        local glass = glint.material { model = model, diffuse = 0, transmission = 0.5, mirror = mirror, fresnel = fresnel, roughness = 0.4, ior = 1.4 }
+        check(light(glass) == black, "%s, fresnel %s, mirror %g", model, fresnel, mirror)
+      end
+    end
+  end
+end
+
 -- A scene with all of it, whose lamp and roughness change.
 local EVERYTHING <const> = [[
 local glint = require "glint"

@@ -201,7 +201,7 @@ static glint_event choose(struct glint_indirect *indirect, const glint_tile_fram
     }
     if (rough) {
         share[GLINT_EVENT_MIRROR] = share[GLINT_EVENT_REFRACT] = 0;
-        if (may_reflect(batch, frame->plan, i))
+        if (frame->plan->rough_samples && may_reflect(batch, frame->plan, i))
             spread_shares(indirect, frame, number, i, share);
     }
     const double all = ((share[GLINT_EVENT_SCATTER] + share[GLINT_EVENT_MIRROR]) + share[GLINT_EVENT_REFRACT]) + share[GLINT_EVENT_STRAIGHT];
