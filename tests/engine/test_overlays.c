@@ -488,6 +488,48 @@ static void test_fit(void **state)
     free(fits);
 }
 
+/// Returns the attribute of the text Q, and the largest one of all texts in *most.
+static double place_of_q(const char *svg, const char *attribute, double *most)
+{
+    double span[2];
+    const char *end = strstr(svg, ">Q<"), *at = end;
+    assert_non_null(end);
+    while (strncmp(at, "<text ", 6) != 0)
+        at--;
+    span_of(svg, attribute, span);
+    *most = span[1];
+    at = strstr(at, attribute);
+    assert_true(at && at < end);
+    return atof(at + strlen(attribute));
+}
+
+/// The label of a curve stands beside the area; on pages that enlarge letters, at the end inside it where no curve is.
+static void test_legend(void **state)
+{
+    (void)state;
+    const double x[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8 };
+    const double y[2][9] = { { 0, 0, 0, 0, 0, 0, 8, 8, 8 }, { 8, 8, 8, 0, 0, 0, 0, 0, 0 } };
+    double at[2][2], most;
+    for (int i = 0; i < 2; i++) {
+        const glint_curve curve = { .label = "Q", .x = x, .y = y[i], .count = 9 };
+        glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_CHART);
+        assert_int_equal(glint_chart_create(&curve, 1, &desc.chart, NULL), GLINT_OK);
+        desc.has_extent = true;
+        desc.extent[0] = desc.extent[1] = 72;
+        char *wide = one_on_page(&desc, 0), *narrow = one_on_page(&desc, 15);
+        const double beside = place_of_q(wide, "<text x=\"", &most);
+        assert_float_equal(beside, most, 0);
+        at[i][0] = place_of_q(narrow, "<text x=\"", &most);
+        assert_true(at[i][0] < 126 - 13 - 8); // the paper ends at 126, the area a font size before, and Q is 8 pixels wide
+        at[i][1] = place_of_q(narrow, " y=\"", &most);
+        free(wide);
+        free(narrow);
+        glint_chart_release(desc.chart);
+    }
+    assert_true(at[0][0] < at[1][0] - 10); // the left end of a curve that rises, the right end of one that falls
+    assert_float_equal(at[0][1], at[1][1], 0);
+}
+
 /// A changed text changes the key of beauty and the bytes of the file, and runs no stage again. The planes, the other
 /// passes and their keys stay the same. The earlier picture is unchanged.
 static void test_reuse(void **state)
@@ -630,7 +672,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
         cmocka_unit_test(test_axes),    cmocka_unit_test(test_box_axes), cmocka_unit_test(test_box_outside),
-        cmocka_unit_test(test_region),  cmocka_unit_test(test_page), cmocka_unit_test(test_fit),       cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_region),  cmocka_unit_test(test_page), cmocka_unit_test(test_fit), cmocka_unit_test(test_legend),      cmocka_unit_test(test_reuse),
         cmocka_unit_test(test_writer),  cmocka_unit_test(test_key),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

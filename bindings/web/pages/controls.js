@@ -20,7 +20,7 @@ export const controlStyle = `
   .control .point { display: grid; grid-template-columns: repeat(3, auto minmax(0, 1fr)); gap: 0.3rem; align-items: center; }
   @media (pointer: coarse), (max-width: 30rem) {
     .control input, .control select, .control .name { min-height: 2.75rem; }
-    .control .name { display: flex; align-items: center; }
+    .control .name { align-content: center; }
     .control input[type=checkbox] { appearance: none; display: grid; place-items: center; width: 2.75rem; min-height: 2.75rem; }
     .control input[type=checkbox]::before { content: ""; width: 1.4rem; height: 1.4rem; border: 2px solid currentColor; border-radius: 0.25rem; line-height: 1.3rem;
       text-align: center; font-weight: bold; }

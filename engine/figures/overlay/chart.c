@@ -13,6 +13,7 @@
 #define GRID 0.15 ///< opacity of the grid
 #define WIDTH 0.14 ///< width of a curve that has no width, in font sizes
 #define DOT 0.55 ///< diameter of a dot, in font sizes
+#define INSIDE 1.25 ///< curves' labels are inside the area if the page enlarges letters by more than this factor
 #define FAR 1e3 ///< farthest end of a stroke from the area of the curves, in sizes of the area
 
 /// Colours of curves, 8-bit sRGB: M. Okabe and K. Ito, 2008, without yellow; then brown and violet.
@@ -96,6 +97,9 @@ static int widest_label(const glint_layout *layout)
     return widest;
 }
 
+/// Returns whether the labels of curves are inside the area of the curves: narrow pages have no space beside it.
+static bool has_legend(const glint_layout *layout) { return layout->overlays->enlarged > INSIDE; }
+
 /// Lays out a chart whose upper left corner is x, y. The numbers along y need space that shortens x, and so on; so y is
 /// measured first.
 static chart make_chart(const glint_layout *layout, int x, int y)
@@ -107,7 +111,7 @@ static chart make_chart(const glint_layout *layout, int x, int y)
     glint_layout_measure(layout, desc->text, &advance);
     for (int i = 0; i < 2; i++)
         glint_layout_measure(layout, desc->titles[i], &names[i]);
-    const int label = widest_label(layout), title = advance + (advance ? 2 * c.gap : typeface->height / 2);
+    const int label = has_legend(layout) ? 0 : widest_label(layout), title = advance + (advance ? 2 * c.gap : typeface->height / 2);
     const int bottom = c.gap + typeface->height + (names[0] ? names[0] + c.gap : 0);
     for (int i = 0; i < 2; i++)
         c.scales[i] = make_scale(layout, i);
@@ -117,7 +121,7 @@ static chart make_chart(const glint_layout *layout, int x, int y)
     glint_marks_fit(&c.marks[1], typeface, &c.scales[1]);
     const int left = (names[1] ? names[1] + c.gap : 0) + c.marks[1].widest + c.gap;
     c.area.x = x + left;
-    c.area.width = layout->width - left - (label ? label + 2 * c.gap : (int)(2 * layout->em));
+    c.area.width = layout->width - left - (label ? label + 2 * c.gap : (int)((has_legend(layout) ? 1 : 2) * layout->em));
     c.scales[0].length = c.area.width > 1 ? c.area.width : 1;
     glint_marks_fit(&c.marks[0], typeface, &c.scales[0]);
     return c;
@@ -246,6 +250,32 @@ static void find_ends(chart *c)
     }
 }
 
+/// Stacks the labels of the curves at the top or the bottom of the area, where the fewest points of curves are. Returns the
+/// left end of the labels.
+static int find_legend(chart *c)
+{
+    const glint_curve *curve;
+    const int wide = widest_label(c->layout), space = c->area.width - wide - 2 * c->gap;
+    const int lefts[] = { c->area.x + c->gap + space, c->area.x + c->gap, c->area.x + c->gap + space / 2 };
+    double high = 0, at[2];
+    size_t hidden[6] = { 0 }, best = 0; // three positions at the top and three at the bottom
+    for (size_t i = 0; (curve = glint_chart_curve(c->layout->desc->chart, i)) != NULL; i++) {
+        c->ends[i] = curve->label[0] ? high + c->layout->typeface.line / 2.0 : NAN;
+        high += curve->label[0] ? c->layout->typeface.line : 0;
+    }
+    for (size_t i = 0; (curve = glint_chart_curve(c->layout->desc->chart, i)) != NULL; i++)
+        for (size_t k = 0; k < curve->count; k++)
+            for (int n = 0; n < 6 && place(c, curve, k, at); n++) {
+                const double x = at[0] - lefts[n % 3], y = n < 3 ? at[1] - c->area.y : c->area.y + c->area.height - at[1];
+                hidden[n] += x > -c->gap && x < wide + c->gap && y < high;
+            }
+    for (size_t n = 1; n < 6; n++)
+        best = hidden[n] < hidden[best] ? n : best;
+    for (size_t i = 0; best >= 3 && glint_chart_curve(c->layout->desc->chart, i); i++)
+        c->ends[i] += c->area.height - high;
+    return lefts[best % 3];
+}
+
 void glint_chart_draw(const glint_layout *layout, int x, int y)
 {
     const glint_curve *curve;
@@ -253,7 +283,9 @@ void glint_chart_draw(const glint_layout *layout, int x, int y)
     if (!has_area(&c))
         return;
     draw_axes(&c, x, y);
-    find_ends(&c);
+    const int labels = has_legend(layout) ? find_legend(&c) : c.area.x + c.area.width + c.gap;
+    if (!has_legend(layout))
+        find_ends(&c);
     const int over = (int)ceil(DOT * layout->em / 2); // lines and dots on the border are whole
     const glint_rect clip = { c.area.x - over, c.area.y - over, c.area.width + 2 * over, c.area.height + 2 * over };
     glint_ink_clip(layout->ink, &clip);
@@ -265,7 +297,7 @@ void glint_chart_draw(const glint_layout *layout, int x, int y)
         int height;
         curve_color(curve, i, color);
         glint_layout_line_size(layout, curve->label, strcspn(curve->label, "\n"), &height);
-        glint_layout_text(layout, curve->label, c.area.x + c.area.width + c.gap,
-                          c.area.y + (int)c.ends[i] - height / 2, 0, 0, color);
+        if (curve->label[0])
+            glint_layout_text(layout, curve->label, labels, c.area.y + (int)c.ends[i] - height / 2, 0, 0, color);
     }
 }
