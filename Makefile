@@ -344,7 +344,7 @@ demo: ## renders scripts/moving_light.lua, 120 frames, into build/demo/
 	@tests/deps.sh build
 	@$(MAKE) --no-print-directory $(if $(filter file,$(origin KERNELS)),KERNELS=native FLOAT=) demo-run
 
-demo-run: all
+demo-run: $(BUILD)/glint
 	@mkdir -p $(BUILD)/demo
 	$(BUILD)/glint scripts/moving_light.lua -o '$(BUILD)/demo/moving_light_%04d.png'
 	@echo
@@ -377,7 +377,7 @@ pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
 	@for page in $(PAGES); do \
 	    case $$page in *:bindings/docs/*) shown= ;; *) shown='s|!\[[^]]*\]([^)]*)||g' ;; esac; \
 	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](\(\.\./\)*engine/README\.md|](engine.md|g' -e 's|](\(engine/\)*render/README\.md|](renderer.md|g' \
-	        -e 's|](\(bindings/\)*docs/\([a-z-]*\.md\)|](\2|g' -e 's|](\(\.\./\)*scripts/\([a-z]*\.md\)|](\2|g' \
+	        -e 's|](\(\.\./\)*\(bindings/\)*docs/\([a-z-]*\.md\)|](\3|g' -e 's|](\(\.\./\)*scripts/\([a-z]*\.md\)|](\2|g' \
 	        -e 's|](\(\.\./\)*scripts/README\.md|](examples.md|g' -e 's|](\(\.\./\.\./scripts/\)*farm/README\.md|](farms.md|g' \
 	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.lua\)),](../../glint/examples/\1),g' \
 	        -e 's,](\([a-z_]*\.c\)),](../../glint/examples/\1),g' -e 's,\([ "]\)scripts/\([a-z_]*\.lua\),\1$(examples)/\2,g' \

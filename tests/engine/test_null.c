@@ -399,6 +399,23 @@ static void test_null_of_every_function(void **state)
     glint_apng_destroy(NULL);
 }
 
+/// A frame without passes and pixel values is refused; one of the two is enough.
+static void test_nothing_to_render(void **state)
+{
+    parts p = make();
+    glint_render_desc frame = glint_render_desc_default();
+    glint_plan *plan;
+    glint_error error = { 0 };
+    (void)state;
+    frame.passes = 0;
+    assert_int_equal(glint_plan_create(p.scene, &frame, &plan, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "passes: at least one pass expected, or `codes`; the frame would be empty");
+    frame.codes = true;
+    assert_int_equal(glint_plan_create(p.scene, &frame, &plan, NULL), GLINT_OK);
+    glint_plan_destroy(plan);
+    destroy(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -406,6 +423,7 @@ int main(void)
         cmocka_unit_test(test_null_of_objects),
         cmocka_unit_test(test_null_of_frames),
         cmocka_unit_test(test_null_of_every_function),
+        cmocka_unit_test(test_nothing_to_render),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

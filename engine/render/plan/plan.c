@@ -82,6 +82,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
         status = glint_fail(error, GLINT_ERR_INVALID, "visibility: auto, cast or scan expected");
     if (!status && desc->passes >> GLINT_PASS_COUNT)
         status = glint_fail(error, GLINT_ERR_INVALID, "passes: no such pass");
+    if (!status && !desc->passes && !desc->codes && !desc->outline && !desc->derivative_count && !desc->light_passes)
+        status = glint_fail(error, GLINT_ERR_INVALID, "passes: at least one pass expected, or `codes`; the frame would be empty");
     if (!status && desc->outline > GLINT_OUTLINE_WHITE)
         status = glint_fail(error, GLINT_ERR_INVALID, "outline: none, black or white expected");
     if (!status)
