@@ -177,6 +177,16 @@ await test("the first picture of each drag has the size of a picture whose rays 
   }
 })
 
+await test("a figure that the page asks for twice at the start is measured, too", async () => {
+  const one = figure({ fixed: () => 4, sample: () => 3e-4, params: [{ name: "n", type: "number", min: 0, max: 40, value: 0 }] })
+  one.step(0)
+  await one.step(0)
+  await one.rest()
+  await one.prepared()
+  assert.equal(one.sizesOfJob.at(-1), 438) // 120,000 samples fit; this picture is not shown
+  assert.deepEqual(sizes(await one.drag()), ["438x274"])
+})
+
 await test("a figure with many rays sends fewer while a control moves, and all at rest", async () => {
   for (const [sample, rays, width] of [[1e-4, undefined, 640], [8e-4, 2, 640], [5e-3, 1, 429]]) { // 115,000 samples fit
     const one = figure({ fixed: () => 4, sample: () => sample, rays: 16, params: [{ name: "n", type: "number", min: 0, max: 40, value: 0 }] })

@@ -116,6 +116,7 @@ export class Renderer {
     this.next = null
     this.drag = null // { scale, count, changes, times, cost }; count: pictures so far, 0 for the first picture of all
     this.scale = 0 // of the last picture of a drag
+    this.isMeasured = false // `moving` has the pictures of a drag
     this.rays = {} // the limit of rays while a control moves, as an option of job.render()
     this.second = null // a promise of another job of the script, for the pictures at rest
   }
@@ -168,9 +169,8 @@ export class Renderer {
       try {
         await this.#answer(request)
         if (!this.next) await this.#rest()
-        const isFirst = !this.drag.count
         if (!this.next) await this.#fill(request)
-        if (!this.next && isFirst && this.job.params?.length > 0) await this.#prepare(request)
+        if (!this.next && !this.isMeasured && this.job.params?.length > 0) await this.#prepare(request)
       } catch (error) {
         if (error.name !== "AbortError") this.failed(error)
       }
@@ -197,6 +197,7 @@ export class Renderer {
     const ms = isFirst ? await this.#picture(this.job, request, drag.scale, this.cost)
       : await this.#picture(this.job, { ...request, ...this.rays }, drag.scale, this.moving, { isCold: drag.count === 1 })
     this.scale = drag.scale
+    this.isMeasured ||= drag.count > 2
     drag.times = [...drag.times, ms].slice(-RECENT)
     if (!this.#isOff(drag)) return
     const better = this.#answerScale(drag.cost.isKnown ? drag.cost : undefined) / drag.scale
@@ -227,7 +228,9 @@ export class Renderer {
       this.moving.add({ ms: this.clock.now() - since, pixelMs: image.pixelMs, samples: image.width * image.height, isCold })
     }
     this.rays = {}
+    this.moving = new Cost()
     await render(true)
+    this.isMeasured = true
     if (!nudged(params, request, 0)) return
     await render(false)
     for (const rays of FEW_RAYS) {
@@ -236,7 +239,7 @@ export class Renderer {
       this.moving = new Cost()
       for (let i = 0; i < 2; i++) await render(false)
     }
-    if (this.#firstScale(CHANGE_RATIO) !== this.scale) await render(false)
+    for (let i = 0; i < 4 && this.#firstScale(CHANGE_RATIO) !== this.scale; i++) await render(false) // larger pictures cost less per sample
   }
 
   // Renders and shows a picture of one sample a pixel. Returns its time. A picture of the same values as the one before it
