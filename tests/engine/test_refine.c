@@ -169,30 +169,14 @@ static void differ_case(int precision, bool odd)
     }
 }
 
-static void range_case(int precision, bool odd)
-{
-    const uint32_t count = GLINT_GROUP * (1 + below(5));
-    float *numbers = input(KIND_FLOAT, count);
-    glint_range_args args = { .count = count, .gain = one_in(2) ? 1 : 1.7F, .floor = one_in(2) ? 0 : -1, .top = one_in(2) ? 1 : HUGE_VALF, .numbers = numbers };
-    (void)precision;
-    for (uint32_t i = 0; i < count; i++)
-        numbers[i] = (float)maybe_odd(odd, between(-1.2, 1.2));
-    FOR_EACH_TESTED
-    {
-        running->range(&args, output("range", KIND_FLOAT, 2));
-        compare_outputs("range");
-    }
-}
-
 static void test_kernels(void **unused)
 {
     (void)unused;
     run_cases(400, 23000, estimate_case);
-    run_cases(400, 23500, range_case);
     run_cases(2000, 24000, differ_case);
 }
 
-// ---- A picture with pixel values only, whose base stores no light ----
+// ---- A picture with pixel values only ----
 
 /// Makes balls over a floor, under a light of this intensity.
 static glint_scene *make_balls(double strength)

@@ -140,8 +140,6 @@ glint_status glint_renderer_run_adaptive(glint_renderer *renderer, const glint_p
     refine->whole = !glint_plan_compares_codes(&plan->desc) && !plan->derivatives &&
                     !(glint_plan_casts_centres(plan) && glint_tile_wants_geometry(plan));
     refine->in_place = refine->whole && alone;
-    refine->in_codes = refine->in_place && plan->desc.codes && plan->desc.tone.bits == 8 && !plan->desc.tone.dither &&
-                       !(plan->desc.passes & GLINT_LIGHT_PASSES) && !plan->light_groups;
     glint_status status = open_base(renderer, error);
     if (!status)
         status = refine->in_place ? render_in_place(renderer, plan, image, table, &in_place, &base_image, &first, error)

@@ -92,20 +92,12 @@ static void compare_border(const glint_refine *refine, border *b, uint32_t count
     glint_refine_compare(refine, &lines, differ);
 }
 
-/// Returns whether the ranges show that no pixels of two tiles can differ.
-static bool are_similar(const glint_refine *refine, const glint_refine_tile *a, const glint_refine_tile *b)
-{
-    return a->ranged && b->ranged && glint_refine_similar(refine, &a->range, &b->range);
-}
-
 /// Compares the last column of a tile with the first of the tile to its right.
 static void join_columns(const glint_refine *refine, glint_refine_tile *left, glint_refine_tile *right, uint32_t width,
                          uint32_t height)
 {
     border b;
     uint32_t differ[GLINT_DIFFER_DIRECTIONS];
-    if (are_similar(refine, left, right))
-        return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
         b.line[0][v] = left->side[1][v];
         b.line[1][v] = right->side[0][v];
@@ -127,11 +119,7 @@ static void join_rows(const joiner *j, uint32_t column, uint32_t row)
     const uint32_t count = end - x < GLINT_TILE_WIDTH ? (uint32_t)(end - x) : GLINT_TILE_WIDTH;
     border b;
     uint32_t differ[GLINT_DIFFER_DIRECTIONS];
-    const glint_refine_tile *own = tile_at(refine, column, row), *below = tile_at(refine, column, row + 1);
     const bool ahead = x + count < end; // a tile on the right
-    if (are_similar(refine, own, below) &&
-        (!ahead || (are_similar(refine, own, below + 1) && are_similar(refine, own + 1, below))))
-        return;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
         b.line[0][v] = glint_refine_edge(refine, row, 1, v) + x;
         b.line[1][v] = glint_refine_edge(refine, row + 1, 0, v) + x;

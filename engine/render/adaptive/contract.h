@@ -1,4 +1,4 @@
-/// The contract of estimate, range and differ: which neighbouring pixels differ. Begin with stages.h.
+/// The contract of estimate and differ: which neighbouring pixels differ. Begin with stages.h.
 #ifndef GLINT_CONTRACT_ADAPTIVE_H
 #define GLINT_CONTRACT_ADAPTIVE_H
 
@@ -22,14 +22,6 @@ typedef struct glint_estimate_args {
     float *code; ///< out
 } glint_estimate_args;
 // The arithmetic: ref.h.
-
-typedef struct glint_range_args {
-    uint32_t count; ///< a multiple of GLINT_GROUP, above 0
-    float gain, floor, top; ///< numbers are multiplied by the gain. Then numbers below `floor`, and NaN, become
-        ///< `floor`, and numbers above `top` become `top`
-    const float *numbers;
-} glint_range_args;
-// range: the minimum and maximum of the numbers.
 
 /// Two adjacent lines of pixels, p[0] .. and q[0] .., both rows or both columns. Each value of a line is an array of
 /// GLINT_DIFFER_LENGTH numbers or more.

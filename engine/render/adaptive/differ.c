@@ -64,12 +64,6 @@ void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *
 
 // ---- A tile -------------------------------------------------------------------------------------------------------
 
-/// Returns whether no ray has hit anything.
-static bool shows_nothing(const glint_tile *tile, const glint_tile_frame *frame)
-{
-    return !frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && !glint_has_lanes(tile->at.hits, tile->group_count);
-}
-
 /// The values of a tile, in the order of groups.
 typedef struct tile_values {
     const float *of[GLINT_DIFFER_VALUES];
@@ -88,23 +82,16 @@ static void take_codes(const glint_tile *tile, const glint_image *base, struct g
     }
 }
 
-/// Reorders values from groups into rows: the rows in `undecided`, and the row below each.
-static void make_rows(const glint_tile *tile, const tile_values *values, uint32_t undecided,
-                      struct glint_differ_work *work)
+/// Reorders values from groups into rows.
+static void make_rows(const glint_tile *tile, const tile_values *values, struct glint_differ_work *work)
 {
-    const uint32_t wanted = undecided | undecided << 1;
     for (int v = 0; v < GLINT_DIFFER_VALUES; v++) {
         const float *from = values->of[v];
-        for (uint32_t y = 0; from && y < tile->group_count / tile->groups_across; y++) {
-            if (!(wanted >> 4 * y & 15)) {
-                from += (size_t)tile->groups_across * GLINT_GROUP;
-                continue;
-            }
+        for (uint32_t y = 0; from && y < tile->group_count / tile->groups_across; y++)
             for (uint32_t x = 0; x < tile->groups_across; x++, from += GLINT_GROUP)
 #pragma GCC unroll 4
                 for (uint32_t r = 0; r < 4; r++)
                     memcpy(&work->row[v][4 * y + r][4 * x], from + 4 * r, 4 * sizeof(float));
-        }
     }
 }
 
@@ -154,86 +141,11 @@ static void note_borders(const glint_tile *tile, const glint_refine *refine, con
                          (float *const[2]) { own->side[0][v], own->side[1][v] });
 }
 
-/// Computes the range of `rows` rows of groups from `row` on; for several objects, the range only tells that there
-/// are several. none: nothing is hit, and no light is seen.
-static void find_range(const glint_tile *tile, const glint_refine *refine, const tile_values *values, uint32_t row, uint32_t rows,
-                       bool none, glint_refine_range *range)
-{
-    const size_t length = (size_t)tile->groups_across * GLINT_GROUP, at = row * length;
-    _Alignas(64) float light[GLINT_GROUP] = { 0 }, code[GLINT_GROUP];
-    glint_range_args args = { .count = rows * (uint32_t)length, .gain = 1, .top = HUGE_VALF };
-    *range = (glint_refine_range) { .id = { 0 } };
-    args.numbers = values->of[GLINT_DIFFER_ID] + at;
-    if (!none)
-        refine->stages->range(&args, range->id);
-    if (range->id[0] < range->id[1])
-        return;
-    args.floor = -1;
-    args.top = 1;
-    for (int c = 0; c < 3 && range->id[1] > 0; c++) {
-        args.numbers = values->of[GLINT_DIFFER_NORMAL + c] + at;
-        refine->stages->range(&args, range->normal[c]);
-    }
-    args.floor = 0;
-    args.gain = refine->gain;
-    for (int c = 0; c < 3; c++) {
-        args.numbers = tile->film.beauty[c] + at;
-        refine->stages->range(&args, light + 2 * c);
-    }
-    refine->stages->estimate(&(glint_estimate_args) { .count = GLINT_GROUP, .gain = 1, .light = light, .code = code });
-    memcpy(range->code, code, sizeof range->code);
-}
-
-/// Returns the distance from the lower minimum to the higher maximum of two ranges. Without fminf, which would be a
-/// call.
-static inline float spread_of(const float a[2], const float b[2])
-{
-    return (a[1] > b[1] ? a[1] : b[1]) - (a[0] < b[0] ? a[0] : b[0]);
-}
-
-bool glint_refine_similar(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b)
-{
-    float bend = 0, sum = 0;
-    if (spread_of(a->id, b->id) > 0)
-        return false;
-    for (int c = 0; c < 3; c++) {
-        const float turn = spread_of(a->normal[c], b->normal[c]);
-        bend += turn * turn;
-        sum += spread_of(a->code[c], b->code[c]);
-    }
-    return bend < 2 * (1 - GLINT_REFINE_NORMAL) - 0.01f && sum <= refine->low; // normals have length 1 within rounding
-}
-
-/// Returns the rows of a tile that may have differences within them or to the next row, one bit each, by the ranges
-/// of rows of groups. Also computes the range of the tile.
-static uint32_t find_undecided_rows(const glint_tile *tile, const glint_tile_frame *frame, const tile_values *values,
-                                    glint_refine_range *all)
-{
-    const uint32_t groups_down = tile->group_count / tile->groups_across;
-    const glint_refine *refine = frame->refine;
-    const bool none = shows_nothing(tile, frame);
-    glint_refine_range range[GLINT_TILE_HEIGHT / 4];
-    uint32_t undecided = 0;
-    find_range(tile, refine, values, 0, groups_down, none, all);
-    if (glint_refine_similar(refine, all, all))
-        return 0;
-    for (uint32_t y = 0; y < groups_down; y++)
-        find_range(tile, refine, values, y, 1, none, &range[y]);
-    for (uint32_t y = 0; y < groups_down; y++) {
-        if (!glint_refine_similar(refine, &range[y], &range[y]))
-            undecided |= 15u << 4 * y;
-        if (y + 1 < groups_down && !glint_refine_similar(refine, &range[y], &range[y + 1]))
-            undecided |= 8u << 4 * y;
-    }
-    return undecided;
-}
-
-/// Compares the rows in `undecided`, first to last: the pixels of each with each other, and with the next row.
+/// Compares the rows, first to last: the pixels of each with each other, and with the next row.
 static void compare_rows(const glint_tile *tile, const glint_refine *refine, const struct glint_differ_work *work,
-                         uint32_t undecided, uint32_t chosen[GLINT_TILE_HEIGHT])
+                         uint32_t chosen[GLINT_TILE_HEIGHT])
 {
-    for (; undecided; undecided &= undecided - 1) {
-        const uint32_t y = (uint32_t)__builtin_ctz(undecided);
+    for (uint32_t y = 0; y < tile->height; y++) {
         const bool next = y + 1 < tile->height;
         const float *p[GLINT_DIFFER_VALUES], *q[GLINT_DIFFER_VALUES];
         uint32_t differ[GLINT_DIFFER_DIRECTIONS];
@@ -256,38 +168,15 @@ static void compare_rows(const glint_tile *tile, const glint_refine *refine, con
     }
 }
 
-/// Estimates the pixel values of rows of groups that contain any of these rows of pixels.
-static void estimate_rows(const glint_tile *tile, const glint_refine *refine, uint32_t wanted, tile_values *values)
+/// Estimates the tile's pixel values.
+static void estimate_codes(const glint_tile *tile, const glint_refine *refine, tile_values *values)
 {
-    const size_t row = (size_t)tile->groups_across * GLINT_GROUP;
     for (int c = 0; c < 3; c++) {
         float *code = glint_differ_values(tile->differ, GLINT_DIFFER_CODE + c);
         values->of[GLINT_DIFFER_CODE + c] = code;
-        for (size_t y = 0; y < tile->group_count / tile->groups_across; y++)
-            if (wanted >> 4 * y & 15)
-                refine->stages->estimate(&(glint_estimate_args) { .count = (uint32_t)row,
-                                                                  .gain = refine->gain,
-                                                                  .light = tile->film.beauty[c] + y * row,
-                                                                  .code = code + y * row });
+        refine->stages->estimate(&(glint_estimate_args) {
+            .count = tile->group_count * GLINT_GROUP, .gain = refine->gain, .light = tile->film.beauty[c], .code = code });
     }
-}
-
-/// Compares the tile's pixels, unless their range shows that none can differ.
-static void compare_inside(const glint_tile *tile, const glint_tile_frame *frame, tile_values *values, uint32_t inside[])
-{
-    struct glint_differ_work *work = tile->differ;
-    const glint_refine *refine = frame->refine;
-    glint_refine_tile *own = &refine->tiles[tile->index];
-    uint32_t undecided = UINT32_MAX >> (32 - tile->height);
-    own->ranged = !refine->coded && tile->width % 4 == 0 && tile->height % 4 == 0;
-    if (own->ranged)
-        undecided = find_undecided_rows(tile, frame, values, &own->range);
-    if (!undecided)
-        return;
-    if (!refine->coded)
-        estimate_rows(tile, refine, undecided | undecided << 1, values);
-    make_rows(tile, values, undecided, work);
-    compare_rows(tile, refine, work, undecided, inside);
 }
 
 void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
@@ -304,7 +193,10 @@ void glint_tile_compare(glint_tile *tile, const glint_tile_frame *frame, glint_f
         take_codes(tile, refine->base, work);
     note_borders(tile, refine, &values);
     memset(own->inside, 0, sizeof own->inside);
-    compare_inside(tile, frame, &values, own->inside);
+    if (!refine->coded)
+        estimate_codes(tile, refine, &values);
+    make_rows(tile, &values, work);
+    compare_rows(tile, refine, work, own->inside);
     own->clipped = tile->counts.clipped - before.clipped;
     own->nonfinite = tile->counts.nonfinite - before.nonfinite;
     own->pixels = 0; // until the film is signed

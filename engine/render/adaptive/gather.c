@@ -1,15 +1,13 @@
 /// Adaptive sampling: gathers the chosen pixels of a tile. They lie along edges, so the tile's own groups are mostly
-/// empty. One walk takes up to 16 samples of as many pixels as fit. With few primitives, a group is one sample of 16
-/// pixels at any position in the tile. Otherwise it is the samples of one pixel, or of a few adjacent pixels: such a
-/// small part of the picture shows few primitives, and mostly the same one in all lanes. Shading adds up samples in
-/// their order, and gets them one after the other in both cases.
+/// empty. One walk takes up to 16 samples of as many pixels as fit. A group is the samples of one pixel, or of a few
+/// adjacent pixels: such a small part of the picture shows few primitives, and mostly the same one in all lanes.
+/// Shading adds up samples in their order, and gets them one after the other.
 #include "engine/base/alloc.h"
 #include "engine/render/tile/tile.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define FEW_PRIMS 16 ///< with more primitives, rays are cast faster if they are adjacent
 #define BLOCK 2 ///< groups along the side of the squares in whose order pixels are listed
 #define FULL 0.9 ///< share of the lanes of all groups with a chosen pixel: above it, gathering saves nothing
 
@@ -27,12 +25,6 @@ struct glint_gathered {
 struct glint_gathered *glint_gathered_create(void) { return glint_alloc(1, sizeof(struct glint_gathered)); }
 
 void glint_gathered_destroy(struct glint_gathered *gathered) { free(gathered); }
-
-/// Returns whether a group is the samples of one pixel.
-static bool groups_samples(const glint_tile_frame *frame)
-{
-    return frame->geometry.prim_count > FEW_PRIMS || frame->plan->runs[GLINT_STAGE_VERTEX_SHADING];
-}
 
 uint32_t glint_tile_list_gathered(const glint_tile *tile, const glint_tile_frame *frame,
                                   uint16_t slots[GLINT_TILE_SAMPLES])
@@ -90,24 +82,6 @@ static void place_pixels(glint_tile *tile, const uint16_t *slots, uint32_t count
     }
 }
 
-/// Makes the rays, one sample of all pixels after the other.
-static void make_stacked_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
-                              uint32_t first, uint32_t samples)
-{
-    static const double corner[2][GLINT_LIGHT_CHUNK] = { { 0 } };
-    const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP;
-    const size_t real = frame->plan->desc.precision == GLINT_PRECISION_FLOAT ? sizeof(float) : sizeof(double);
-    place_pixels(tile, slots, count, corner, 1, tile->gathered->pixel);
-    tile->camera.groups_across = 1;
-    tile->camera.group_count = blocks;
-    for (uint32_t k = 0; k < samples; k++) {
-        glint_plan_sample_offset(frame->plan, first + k, tile->camera.offset);
-        tile->camera.down = (char *)tile->rays.direction + k * blocks * 3 * GLINT_GROUP * real;
-        glint_tile_make_rays(tile, frame);
-    }
-    tile->camera.down = tile->rays.direction;
-}
-
 /// Makes the rays, one pixel after the other.
 static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
                             uint32_t first, uint32_t samples)
@@ -126,7 +100,7 @@ static void make_pixel_rays(glint_tile *tile, const glint_tile_frame *frame, con
     glint_tile_make_rays(tile, frame);
 }
 
-/// Activates lanes in groups that repeat after `every` groups: the first `count` lanes of each repetition.
+/// Activates the first `count` lanes of groups that repeat after `every` groups.
 static void activate_lanes(glint_tile *tile, uint32_t every, uint32_t count)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
@@ -139,21 +113,15 @@ void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const ui
                        uint32_t first, uint32_t samples)
 {
     struct glint_gathered *gathered = tile->gathered;
-    const bool by_pixel = groups_samples(frame);
-    const uint32_t blocks = (count + GLINT_GROUP - 1) / GLINT_GROUP, lanes = by_pixel ? count * samples : count;
-    const uint32_t every = (lanes + GLINT_GROUP - 1) / GLINT_GROUP;
     memcpy(gathered->active, tile->active, sizeof gathered->active);
     gathered->has_point_light = false;
     gathered->group_count = tile->group_count;
     gathered->groups_across = tile->groups_across;
     glint_tile_aim(tile, frame, 0);
-    if (by_pixel)
-        make_pixel_rays(tile, frame, slots, count, first, samples);
-    else
-        make_stacked_rays(tile, frame, slots, count, first, samples);
+    make_pixel_rays(tile, frame, slots, count, first, samples);
     tile->groups_across = 1;
-    tile->group_count = tile->camera.group_count = by_pixel ? every : samples * blocks;
-    activate_lanes(tile, every, lanes);
+    tile->group_count = tile->camera.group_count;
+    activate_lanes(tile, tile->group_count, count * samples);
 }
 
 // ---- Reordering from pixel by pixel to sample by sample ----
@@ -253,7 +221,7 @@ void glint_tile_shade_gathered(glint_tile *tile, const glint_tile_frame *frame, 
     struct glint_gathered *gathered = tile->gathered;
     float *const beauty[3] = { gathered->beauty[0], gathered->beauty[1], gathered->beauty[2] };
     const bool last = first + samples == (uint32_t)frame->plan->desc.samples;
-    if (groups_samples(frame) && samples > 1)
+    if (samples > 1)
         stack_samples(tile, frame, light_count, count, samples);
     glint_tile_shade_stacked(tile, frame, light_count, first, samples,
                              gathered->has_point_light ? (const double(*)[3][GLINT_TILE_SAMPLES])gathered->point_light

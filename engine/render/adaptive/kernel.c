@@ -1,4 +1,4 @@
-// estimate, range and differ: find the neighbouring pixels that differ. Contract: contract.h.
+// estimate and differ: find the neighbouring pixels that differ. Contract: contract.h.
 #include "engine/render/stages/shade/group.h"
 #include "engine/render/stages/simd/elementary.h"
 
@@ -14,19 +14,6 @@ static void estimate(const glint_estimate_args *args)
                           f_set((float)(65535 * 0.01599656894));
         f_store(args->code + i, f_select(f_le(dark, top), dark, bright));
     }
-}
-
-static void range(const glint_range_args *args, float out[2])
-{
-    const vf gain = f_set(args->gain), floor = f_set(args->floor), top = f_set(args->top);
-    vf least = top, most = floor;
-    for (uint32_t i = 0; i < args->count; i += VF) {
-        const vf x = f_min(f_max(gain * f_load(args->numbers + i), floor), top);
-        least = f_min(x, least);
-        most = f_max(x, most);
-    }
-    out[0] = f_min_all(least);
-    out[1] = f_max_all(most);
 }
 
 /// Returns the differences of one value for VF pairs, from pixel i of one line and pixel k of another line on.
@@ -90,11 +77,6 @@ static void differ(const glint_differ_args *args, glint_differences *out)
 
 #if GLINT_WITH(SAMPLES)
 KERNEL(estimate, glint_estimate_args)
-
-void GLINT_ENTRY(range)(const glint_range_args *args, float out[2])
-{
-    range(args, out);
-}
 
 void GLINT_ENTRY(differ)(const glint_differ_args *args, glint_differences *out)
 {

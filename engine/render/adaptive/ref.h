@@ -1,4 +1,4 @@
-// The reference of estimate, range and differ, one number or one pair at a time.
+// The reference of estimate and differ, one number or one pair at a time.
 
 static void estimate(const glint_estimate_args *args)
 {
@@ -10,15 +10,6 @@ static void estimate(const glint_estimate_args *args)
                               (float)(65535 * 0.4193434603) * eighth) +
                              (float)(65535 * 0.01599656894);
         args->code[i] = dark <= (float)(65535 * 12.92 * 0.0031308) ? dark : bright;
-    }
-}
-
-static void range(const glint_range_args *args, float out[2])
-{
-    for (uint32_t i = 0; i < args->count; i++) {
-        const float x = min_float(max_float(args->gain * args->numbers[i], args->floor), args->top);
-        out[0] = i && out[0] < x ? out[0] : x;
-        out[1] = i && out[1] > x ? out[1] : x;
     }
 }
 

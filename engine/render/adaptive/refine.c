@@ -108,11 +108,6 @@ static void copy_whole(const glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *base = frame->base;
-    const glint_refine_tile *own = &frame->refine->tiles[tile->index];
-    if (frame->refine->in_codes && !own->clipped && !own->nonfinite) { // only refined pixels' values are missing
-        mark_refined(tile, frame);
-        return;
-    }
     for (int c = 0; c < 3; c++) {
         glint_tile_take_plane(tile, frame, base->plane[GLINT_PASS_BEAUTY][c], tile->film.beauty[c]);
         for (int k = 0; k < GLINT_TERM_COUNT; k++)

@@ -21,11 +21,6 @@
 
 #define GLINT_REFINE_NORMAL 0.9f ///< cosine
 
-/// The minimum and maximum of some pixels.
-typedef struct glint_refine_range {
-    float id[2], normal[3][2], code[3][2]; ///< code: pixel values or estimates
-} glint_refine_range;
-
 typedef struct glint_refine_tile {
     uint64_t pixels; ///< stamp of the compared pixels of the base, see glint_film_stamp; 0: unknown
     // Chosen pixels, for each row from the top: one bit per pixel, the leftmost lowest.
@@ -33,8 +28,6 @@ typedef struct glint_refine_tile {
     uint32_t chosen[GLINT_TILE_HEIGHT]; ///< pixels that differ from one of any tile; with a lens also pixels near these
     uint32_t above; ///< pixels of the first row that differ from one in the tiles above
     uint64_t clipped, nonfinite; ///< counts of the base's pixels, if it has pixel values
-    glint_refine_range range; ///< the range of all pixels
-    bool ranged; ///< `range` is known
     /// The compared values of the first and last column; light if pixel values are estimated
     float side[2][GLINT_DIFFER_VALUES][GLINT_DIFFER_LENGTH];
 } glint_refine_tile;
@@ -45,8 +38,6 @@ typedef struct glint_refine {
     bool coded; ///< the base's pixel values are compared; otherwise estimates
     bool whole; ///< tiles without a chosen pixel are copied from the base unchanged
     bool in_place; ///< the base is rendered into the picture that is made from it
-    bool in_codes; ///< like in_place, for a picture of only pixel values: the base's light is stored for tiles with
-                   ///< clipped or non-finite pixels
     glint_tone_desc tone; ///< tone of the pixel values
     uint32_t least; ///< sum of differences of pixel values up to which pixels are equal
     float low, high, gain; ///< see glint_differ_args, glint_estimate_args
@@ -71,9 +62,6 @@ typedef struct glint_refine_lines {
     bool grouped; ///< four pixels of each group are contiguous: the lines are rows of a tile; otherwise all pixels are
         ///< contiguous
 } glint_refine_lines;
-
-/// Returns whether no two pixels in these ranges can differ.
-bool glint_refine_similar(const glint_refine *refine, const glint_refine_range *a, const glint_refine_range *b);
 
 /// Computes which pixels of two lines differ, as glint_differences does.
 void glint_refine_compare(const glint_refine *refine, const glint_refine_lines *lines,

@@ -64,7 +64,6 @@
     ROW(GLINT_WITH(SAMPLES), void, resolve, (const glint_resolve_args *args)) \
     ROW(GLINT_WITH(SAMPLES), void, resolve_samples, (const glint_shade_args *sample, uint32_t count)) \
     ROW(GLINT_WITH(SAMPLES), void, estimate, (const glint_estimate_args *args)) \
-    ROW(GLINT_WITH(SAMPLES), void, range, (const glint_range_args *args, float out[2])) \
     ROW(GLINT_WITH(SAMPLES), void, differ, (const glint_differ_args *args, glint_differences *out)) \
     ROW(true, void, tone, (const glint_tone_args *args))
 

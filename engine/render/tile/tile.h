@@ -418,8 +418,8 @@ static inline uint32_t glint_tile_most_gathered(const glint_plan *plan)
 {
     return GLINT_TILE_GROUPS / glint_tile_gathered_samples(plan) * GLINT_GROUP;
 }
-/// Fills the groups of the tile with `samples` samples, from number `first` on, of `count` listed pixels, sample by
-/// sample, and computes their rays.
+/// Fills the groups of the tile with `samples` samples, from number `first` on, of `count` listed pixels, pixel by
+/// pixel, and computes their rays.
 void glint_tile_gather(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *slots, uint32_t count,
                        uint32_t first, uint32_t samples);
 /// Returns the sums of the light of faces and vertices, diffuse and specular, for the samples gathered, and clears them.
@@ -437,9 +437,7 @@ bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_is_base(glint_tile *tile, const glint_tile_frame *frame);
 /// Copies the lanes that are not refined from a plane of the base (4-byte numbers) into an array of the tile.
 void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups);
-/// Copies the other pixels' light, and all pixels' geometry, from the base, and makes all pixels active. If the
-/// picture has only pixel values and no light is clipped or not finite, copies nothing, and the refined pixels stay
-/// active: see glint_refine.in_codes.
+/// Copies the other pixels' light, and all pixels' geometry, from the base, and makes all pixels active.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
 /// Returns the lanes of group `g` inside an absorbing medium, whose light is tinted even without an occluder. The sample

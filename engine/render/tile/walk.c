@@ -303,18 +303,6 @@ static void tone(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - start;
 }
 
-/// Stores the tile in the image. A base of pixel values stores light only where it is clipped or not finite: such
-/// pixels are counted again when the tile is refined.
-static void store(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
-{
-    const bool in_codes = frame->plan->is_base && frame->refine->in_codes;
-    if (!in_codes)
-        glint_tile_store_light(tile, frame);
-    tone(tile, frame);
-    if (in_codes && (tile->counts.clipped != before.clipped || tile->counts.nonfinite != before.nonfinite))
-        glint_tile_store_light(tile, frame);
-}
-
 /// Prepares the cache of the tile, before its first sample.
 static void begin_cached(glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -348,7 +336,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_step(tile, frame, GLINT_AT_STORE, NULL);
     if (frame->base)
         glint_tile_take_base(tile, frame);
-    store(tile, frame, before);
+    glint_tile_store_light(tile, frame);
+    tone(tile, frame);
     if (plan->is_base)
         glint_tile_compare(tile, frame, before);
     glint_tile_sign_film(tile, frame, before, refined);

@@ -275,8 +275,6 @@ static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
     const glint_light_grid *grid = args->grid;
     for (uint32_t k = 0; k < grid->other_count; k++) {
         const glint_prim *prim = &args->geometry->prims[grid->others[k]];
-        if (sphere_apart_f64(prim, tile->lower, tile->upper, &tile->light))
-            continue;
         const occluder_f64 occluder = { grid->others[k], seen_sides_f64(tile, NULL, prim) };
         for (uint32_t g = 0; g < args->group_count; g++) {
             begin_group_f64(g, group);

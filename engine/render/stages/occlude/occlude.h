@@ -12,40 +12,6 @@
 #include "engine/render/stages/simd/real.h"
 #include "engine/render/stages/surface/surface.h"
 
-/// Returns whether some plane that touches the sphere separates the sphere from the whole shaft, so that the sphere
-/// blocks nothing.
-static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
-                            const light_bounds *light)
-{
-    float middle[3], half[3], end[3], end_half[3], segment[3], e[3], along = 0, length2 = 0;
-    for (int k = 0; k < 3; k++) {
-        middle[k] = 0.5f * (lower[k] + upper[k]);
-        half[k] = upper[k] - middle[k];
-        end[k] = 0.5f * (light->lower[k] + light->upper[k]);
-        end_half[k] = light->upper[k] - end[k];
-        segment[k] = light->directional ? end[k] : end[k] - middle[k];
-        e[k] = middle[k] - prim->filter_center[k];
-        along -= e[k] * segment[k];
-        length2 += segment[k] * segment[k];
-    }
-    along = larger(along / length2, 0);
-    if (!light->directional)
-        along = smaller(along, 1);
-    for (int k = 0; k < 3; k++)
-        e[k] += along * segment[k];
-    // e: vector from the sphere's centre to the nearest point of the shaft's middle segment
-    float size = 0, at_points = 0, at_light = 0;
-    for (int k = 0; k < 3; k++) {
-        size += (fabsf(middle[k]) + fabsf(prim->filter_center[k])) + fabsf(end[k]);
-        at_points += e[k] * (middle[k] - prim->filter_center[k]) - fabsf(e[k]) * half[k];
-        at_light +=
-            (light->directional ? e[k] * end[k] : e[k] * (end[k] - prim->filter_center[k])) - fabsf(e[k]) * end_half[k];
-    }
-    const float length = sqrtf(DOT(e, e)), slack = 4 * WALK_SLACK * size * length;
-    const float bound = prim->filter_bound * length + slack;
-    return at_points > bound && at_light > (light->directional ? slack : bound);
-}
-
 /// Adds an occluder to the tile's list. Returns false if the list is full.
 static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
 {
@@ -79,8 +45,7 @@ static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
     while ((node = next_in_shaft(&walk, &prims)))
         for (; prims; prims &= prims - 1) {
             const uint32_t id = node->child[__builtin_ctz(prims)] & ~GLINT_NODE_PRIM;
-            if (id != only && !R(sphere_apart)(&geometry->prims[id], tile->lower, tile->upper, &tile->light) &&
-                !R(note_occluder)(tile, id))
+            if (id != only && !R(note_occluder)(tile, id))
                 return;
         }
 }
