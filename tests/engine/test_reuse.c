@@ -179,7 +179,7 @@ static const field render_fields[] = {
     R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
-    R(tone.dither, FLAG, 0, 1),     R(clamp, NUMBER, 0, 2),
+    R(tone.dither, FLAG, 0, 1),     R(clamp, NUMBER, 0, 0.3),
     R(rays, WHOLE, 0, 3),
     R(region, REGION, 0, 0),        R(light_passes, FIXED, 0, 0), // see tests/lua for light passes
     R(derivatives, FIXED, 0, 0),    R(derivative_count, FIXED, 0, 0),
@@ -732,6 +732,127 @@ static void reused_equals_fresh_with_little_memory(void **unused)
         edits(memory, 8, false, memory > 200000, 8);
 }
 
+/// Sets a field to a value other than its own, if one is drawn soon.
+static void set_other(const field *f, void *desc)
+{
+    char before[sizeof(glint_transform)];
+    assert_true(f->size <= sizeof before);
+    memcpy(before, (char *)desc + f->offset, f->size);
+    for (int i = 0; i < 20 && memcmp(before, (char *)desc + f->offset, f->size) == 0; i++)
+        set_field(f, desc);
+}
+
+/// Makes a mirror, clear glass, a metal, rough glass and a translucent material, lamps that the eye sees, and, if
+/// `open`, a background by a program.
+static void show_everything(world *w, bool open)
+{
+    for (int i = 2; i < SHAPES; i++) {
+        glint_material_desc m = glint_material_desc_default();
+        for (int c = 0; c < 3; c++) {
+            m.specular[c] = 0.3;
+            m.has_mirror = i == 2;
+            m.mirror[c] = i == 2 ? 0.5 : 0;
+            m.transmission[c] = i == 3 || i == 5 ? 0.8 : 0;
+            m.absorption[c] = i == 3 ? 0.1 : 0;
+        }
+        m.model = i == 4 ? GLINT_MODEL_COOK_TORRANCE : i == 6 ? GLINT_MODEL_BLINN_PHONG : GLINT_MODEL_PHONG;
+        m.fresnel = i == 3;
+        m.has_roughness = i == 4 || i == 5;
+        m.has_f0 = i == 4;
+        m.opacity = i == 6 ? 0.5 : 1;
+        assert_int_equal(glint_material_set(w->materials[i], &m, NULL), GLINT_OK);
+    }
+    for (int i = 0; i < LIGHTS; i++) {
+        glint_light_desc d = *glint_light_get(w->lights[i]);
+        d.struct_size = sizeof d;
+        d.visible = d.kind == GLINT_LIGHT_SPHERE || d.kind == GLINT_LIGHT_POLYGON;
+        d.radius = d.kind == GLINT_LIGHT_SPHERE ? 0.5 : d.radius;
+        d.position[2] = d.kind == GLINT_LIGHT_SPHERE ? -3 : d.position[2];
+        d.position[1] = d.kind == GLINT_LIGHT_SPHERE ? 2 : d.position[1];
+        assert_int_equal(glint_light_set(w->lights[i], &d, NULL), GLINT_OK);
+    }
+    glint_scene_desc s = *glint_scene_get(w->scene);
+    s.struct_size = sizeof s;
+    s.background_program = open ? skies[0] : NULL;
+    assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
+    w->render.width = 40;
+    w->render.height = 24;
+    w->render.max_depth = 3;
+    w->render.codes = true;
+    w->render.alpha = open;
+}
+
+/// Sets a field of all objects of its kind, or of the frame, to new values. Returns whether any object took its value.
+static bool set_everywhere(world *w, const table *of, const field *f)
+{
+    bool taken = false;
+#define SET(type, object) \
+    do { \
+        glint_##type##_desc d = *glint_##type##_get(object); \
+        d.struct_size = sizeof d; \
+        set_other(f, &d); \
+        taken |= glint_##type##_set(object, &d, NULL) == GLINT_OK; \
+    } while (0)
+    for (int i = 0; i < SHAPES && of == &material_table; i++)
+        SET(material, w->materials[i]);
+    for (int i = 0; i < LIGHTS && of == &light_table; i++)
+        SET(light, w->lights[i]);
+    for (int i = 0; i < SHAPES && of == &shape_table; i++) {
+        SET(shape, w->shapes[i]);
+        const bool group = glint_shape_get(w->shapes[i])->kind == GLINT_SHAPE_GROUP; // the parts of others must stay closed
+        for (size_t k = 0; group && k < glint_group_count(w->shapes[i]); k++)
+            SET(shape, glint_group_child(w->shapes[i], k));
+    }
+    if (of == &camera_table)
+        SET(camera, w->camera);
+    if (of == &scene_table)
+        SET(scene, w->scene);
+#undef SET
+    if (!of)
+        set_other(f, &w->render);
+    return taken || !of;
+}
+
+/// Edits each field alone in a frame that is known, twice: a result whose key lacks the field is then reused wrongly.
+static void each_field_alone(void **unused)
+{
+    (void)unused;
+    const table *const tables[] = { &material_table, &light_table, &camera_table, &shape_table, &scene_table, NULL };
+    uint32_t count = 0, taken = 0;
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    desc.threads = 2;
+    for (size_t t = 0; t < COUNT(tables); t++) {
+        const field *fields = tables[t] ? tables[t]->of : render_fields;
+        const size_t end = tables[t] ? tables[t]->count : COUNT(render_fields);
+        for (size_t i = 0; i < end; i++) {
+            world w;
+            glint_renderer *both[2];
+            if (fields[i].kind == FIXED || count++ % case_step())
+                continue;
+            state = seed(100 + count);
+            make_world(&w);
+            show_everything(&w, count % 2);
+            open_both(desc, both);
+            for (int frame = 0; frame < 3; frame++)
+                render_both(&w, both, NULL, frame);
+            for (int edit = 0; edit < 2; edit++) {
+                taken += set_everywhere(&w, tables[t], &fields[i]);
+                if (tables[t] == &camera_table) {
+                    glint_camera_desc c = *glint_camera_get(w.camera);
+                    c.struct_size = sizeof c;
+                    keep_focus(&c);
+                    glint_camera_set(w.camera, &c, NULL);
+                }
+                render_both(&w, both, NULL, 3 + edit);
+            }
+            free_world(&w);
+            close_both(both);
+        }
+    }
+    print_message("%u of %u edits were taken\n", taken, 2 * count);
+    assert_true(taken * case_step() > count);
+}
+
 /// Each call of shade sums a chunk of an area light's samples. An earlier light inside a closed ball reaches nothing
 /// visible, but shifts the start of these chunks.
 static void a_lamp_that_reaches_nothing(void **unused)
@@ -997,6 +1118,7 @@ int main(void)
         cmocka_unit_test(frames_that_come_back),
         cmocka_unit_test(a_highlight_that_a_tile_does_not_show),
         cmocka_unit_test(hits_under_a_moved_light_are_kept),
+        cmocka_unit_test(each_field_alone),
         cmocka_unit_test(reused_equals_fresh),
         cmocka_unit_test(reused_equals_fresh_of_chosen_pixels),
         cmocka_unit_test(reused_equals_fresh_without_memory),
