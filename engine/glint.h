@@ -779,7 +779,7 @@ typedef struct glint_render_desc {
     /// glint_plan_create; a plan's own description has them without "*".
     const char *light_passes;
     /// 0 (default): no limit. Above 0, at most 65536: the most rays of each kind that a sample sends: to an area light,
-    /// of indirect light or ambient occlusion, and from a rough surface. For quick pictures of a scene that is edited
+    /// for indirect light or ambient occlusion, and from a rough surface. For quick pictures of a scene that is edited
     int64_t rays;
 } glint_render_desc;
 

@@ -821,7 +821,7 @@ function glint.scene(fields) end
 ---@field seed? integer  0 .. 2^53: selects one of many equally good sample patterns. Default 0
 ---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 if mirror + transmission of a material exceeds 1. Default 5
 ---@field clamp? number  the most light that one random path (indirect light, rough surfaces) may bring from one of its later surfaces, in units of the picture; removes bright dots together with a part of the light. Default 0: no limit
----@field rays? integer  0 .. 65536: the most rays of each kind that a sample sends: to each area light, of indirect light or ambient occlusion, and from a rough surface. For quick, noisy pictures. Default 0: as many as the lights and the scene say
+---@field rays? integer  0 .. 65536: the most rays of each kind that a sample sends: to each area light, for indirect light or ambient occlusion, and from a rough surface. For quick, noisy pictures. Default 0: as many as the lights and the scene say
 ---@field precision? "double"|"float"  the number format in which hits and shadows are decided. Default "double"
 ---@field visibility? "auto"|"cast"|"scan"  how visible surfaces are found: by casting a ray through each sample, or by projecting triangles. The pictures are identical. Default "auto"
 ---@field bits? 8|16  bits per channel of a .png. Default 8

@@ -448,7 +448,8 @@ bool glintL_bound_scene(const glint_scene *scene, double center[3], double *radi
 bool glintL_orbit_read(const char *text, glintL_orbit *orbit);
 /// Writes the numbers of --orbit. Returns whether they turn the view.
 bool glintL_orbit_spell(const glintL_orbit *orbit, char out[96]);
-/// Turns the camera of a scene. False: the view is not turned; otherwise the caller ends with the fields in `before`.
+/// Turns the camera of a scene and stores its fields in `before`. If true, the caller then calls glintL_orbit_end. False:
+/// the view is not turned.
 bool glintL_orbit_begin(const glint_scene *scene, const glintL_orbit *orbit, const glint_render_desc *desc,
                         glint_camera_desc *before);
 void glintL_orbit_end(const glint_scene *scene, const glint_camera_desc *before);

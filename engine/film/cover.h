@@ -1,5 +1,5 @@
-/// What is drawn over a finished picture, as the renderer knows it. Whoever makes overlays (engine/figures) gives them
-/// the functions below, and nobody else knows what they show. Internal.
+/// The renderer's interface to overlays, which are drawn over a finished picture. engine/figures makes the overlays and
+/// implements the functions below. Other parts do not know what the overlays show. Internal.
 #ifndef GLINT_FILM_COVER_H
 #define GLINT_FILM_COVER_H
 

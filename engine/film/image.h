@@ -15,7 +15,7 @@
 /// The stamp of one tile's pixels.
 typedef struct glint_film_stamp {
     glint_key key; ///< key of the pixels' inputs: equal keys mean equal pixels; all zero: unknown
-    uint64_t codes; ///< stamp of the codes: equal stamps in two images of one size and tone mean equal codes; 0:
+    uint64_t codes; ///< stamp of the pixel values: equal stamps in two images of one size and tone mean equal values; 0:
         ///< unknown
     uint64_t base; ///< stamp for adaptive sampling. If this image is a base: equal stamps in two images of one size
                    ///< mean equal pixels. If it was made from a base: equal stamps mean that the bases have equal
@@ -27,7 +27,7 @@ struct glint_image {
     int width, height;
     float *plane[GLINT_PLANE_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not stored.
         ///< Passes of one channel have only [0]
-    void *codes; ///< channels * width * height codes, uint8_t or uint16_t (native order), interleaved; NULL: none
+    void *codes; ///< channels * width * height pixel values, uint8_t or uint16_t (native order), interleaved; NULL: none
     bool alpha; ///< beauty is light times coverage; an image with beauty then also has the pass `alpha`
     glint_outline_color outline; ///< colour of the outline, drawn over beauty in a PNG; then the image has the pass
         ///< `outline`

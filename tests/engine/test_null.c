@@ -399,7 +399,7 @@ static void test_null_of_every_function(void **state)
     glint_apng_destroy(NULL);
 }
 
-/// A frame without passes and pixel values is refused; one of the two is enough.
+/// A frame with neither passes nor pixel values is refused. One of the two is enough.
 static void test_nothing_to_render(void **state)
 {
     parts p = make();

@@ -503,7 +503,7 @@ static double place_of_q(const char *svg, const char *attribute, double *most)
     return atof(at + strlen(attribute));
 }
 
-/// The label of a curve stands beside the area; on pages that enlarge letters, at the end inside it where no curve is.
+/// The label of a curve is next to the area of the curves. On pages that enlarge letters, it is inside, away from the curve.
 static void test_legend(void **state)
 {
     (void)state;

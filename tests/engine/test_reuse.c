@@ -732,7 +732,7 @@ static void reused_equals_fresh_with_little_memory(void **unused)
         edits(memory, 8, false, memory > 200000, 8);
 }
 
-/// Sets a field to a value other than its own, if one is drawn soon.
+/// Draws values for a field until one differs from its current value, at most 20 times.
 static void set_other(const field *f, void *desc)
 {
     char before[sizeof(glint_transform)];
@@ -813,7 +813,8 @@ static bool set_everywhere(world *w, const table *of, const field *f)
     return taken || !of;
 }
 
-/// Edits each field alone in a frame that is known, twice: a result whose key lacks the field is then reused wrongly.
+/// Renders a frame three times, so that its results are cached, and then edits one field, twice. If a key lacks the
+/// field, a wrong result is reused.
 static void each_field_alone(void **unused)
 {
     (void)unused;
@@ -849,7 +850,7 @@ static void each_field_alone(void **unused)
             close_both(both);
         }
     }
-    print_message("%u of %u edits were taken\n", taken, 2 * count);
+    print_message("%u of %u edits were accepted\n", taken, 2 * count);
     assert_true(taken * case_step() > count);
 }
 
@@ -941,8 +942,8 @@ static void go_back(world *w)
     assert_int_equal(glint_shape_set(w->shapes[4], &place, NULL), GLINT_OK);
 }
 
-/// Tests frames with a few positions and colours that return in any order,
-/// so that a frame uses all its cached results again.
+/// Renders frames in which a few positions and colours return in any order. A result that is still in its slot is used
+/// again, and must fit the frame.
 static void frames_that_come_back(void **unused)
 {
     (void)unused;

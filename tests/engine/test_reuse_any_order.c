@@ -172,7 +172,7 @@ static void change(stand *s)
         s->render.samples = 4;
 }
 
-/// Results that return must belong to the same pixels, surfaces and samples, even when stored between other frames.
+/// A reused result must belong to the same pixels, surfaces and samples, also if other frames came in between.
 static void come_back(size_t memory, int frames)
 {
     stand s;

@@ -250,7 +250,7 @@ function tests.fields()
   check(ball(gold, { background = 1, reflection_samples = 64 })(31, "mirror") == half and half > 0.3, "a pattern of the highlight weighs what facets reflect")
 end
 
--- Without samples for them, paths of indirect light end at rough glass as at a black ball.
+-- With reflection_samples = 0, paths of indirect light end at rough glass as at a black ball.
 function tests.paths_end_at_rough_glass_without_samples()
   local function light(material)
     return glint.scene {

@@ -25,8 +25,8 @@ async function test(name, run) {
 }
 
 // A figure of 640 x 400 CSS pixels whose pictures take `fixed` ms and `sample` ms for each sample, on a clock that only
-// pictures move. steps: the limits of samples of its pictures at rest.
-// params: the script's parameters. rays: the rays of a sample, which share its time evenly.
+// pictures move. samples: the samples of a picture at rest. params: the script's parameters. rays: the rays of a sample,
+// which share its time evenly.
 function figure({ fixed, sample, density = 1, samples = 1, params, rays = 1 }) {
   const seen = [], sizesOfJob = [], clock = { time: 0, now: () => clock.time }
   let wake

@@ -21,7 +21,7 @@ const colors = HighlightStyle.define([
 
 export class Editor {
   #view
-  // Puts an editor of a text into an element, instead of what it contains. `changed` is called after each change.
+  // Replaces the contents of an element by an editor with this text. `changed` is called after each change.
   constructor(element, text, changed) {
     this.#view = new EditorView({
       doc: text,

@@ -14,12 +14,12 @@ let values = {}, frame = 1, playing = false, turning, due = 0
 
 // ---- The editor ----
 
-// The script in the editor's place until the editor is loaded, with the members of an Editor.
+// Shows the script as plain text until the editor is loaded. Has the members of Editor.
 const plain = { get text() { return get("script").textContent }, set text(text) { get("script").textContent = text }, mark() {} }
 let editor = plain, loading, typing, marked = []
 const script = () => editor.text
 
-// Loads the editor. Only the first picture or error calls this, because the editor would delay them.
+// Loads the editor. Called after the first picture or error, so that the editor does not delay it.
 async function loadEditor() {
   const { Editor } = await import("./editor.js")
   editor = new Editor(get("editor"), editor.text, () => {

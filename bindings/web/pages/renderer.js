@@ -3,25 +3,25 @@ import { load } from "./glint.mjs"
 import { written } from "./controls.js"
 
 const REST_MS = 150         // after this time without changes the picture gets its full size and samples
-const HOLD_MS = 500         // and after this time while the reader still holds a control
+const HOLD_MS = 500         // the same while the reader still holds the control
 const ANSWER_MS = 40        // time for a picture while a control moves
 const PIXELS_MS = 16        // of which its pixels get at least this, whatever the fixed part takes
 const FIRST_SCALE = 0.25    // size of the first picture, before any cost is known
 const STEP_MS = 1000        // a picture that takes longer appears in smaller sizes first
-const WHOLE = 0.85          // a picture that is nearly as large gets its full size
+const WHOLE = 0.85          // a larger scale is rounded up to the full size
 const KEEP_RATIO = 1.5      // a drag keeps the size of the drag before it unless that is wrong by this factor
-const CHANGE_RATIO = 1.25   // within a drag, the size changes if it is wrong by this factor,
-const CHANGE_MOST = 4       // at most by this factor,
-const RECENT = 7            // judged by this number of pictures, which is also the number of measurements that count,
-const LATE = 1.25           // if all of them but one took longer than this part of ANSWER_MS, or less than
-const EARLY = 0.5           // this part
-const STUCK = 4             // two pictures that take longer than this part decide at once; after the only change only
-                            // RECENT pictures of this time change the size again
+const CHANGE_RATIO = 1.25   // within a drag, the size changes only if it is wrong by this factor
+const CHANGE_MOST = 4       // largest factor of one change
+const RECENT = 7            // number of pictures that decide about a change; also the number of measurements that count
+const LATE = 1.25           // the size changes if all of them but one took more than this many times ANSWER_MS,
+const EARLY = 0.5           // or less than this many times
+const STUCK = 4             // it changes after two pictures if both took more than this many times ANSWER_MS; after the
+                            // first change of a drag, only if all RECENT pictures did
 const LEAST_WIDE = 160      // width of the smallest picture while a control moves, pixels,
 const LEAST_MS = 200        // unless it takes longer than this
 const FEW_RAYS = [2, 1]     // rays of each kind while a control moves, if a picture of full size takes too long with all
-const CLEAR = 0.5           // the second number only if the first one makes a picture smaller than this part
-const NUDGE = 0.01          // change of a parameter that measures a drag before there is one, as a part of its range
+const CLEAR = 0.5           // the second number is used only if the scale with the first one is below this
+const NUDGE = 0.01          // change of a parameter in the hidden pictures that measure a drag, as a share of its range
 const WAIT_MS = 500         // shortest time that is shown as a line
 const SAMPLES = 4           // fewest samples of a pixel at rest
 const LETTERS = 12          // smallest size of letters, CSS pixels
@@ -61,7 +61,7 @@ export function wait(line, ms) {
   else if (!line.hidden) line.animate([{ transform: "scaleX(0)" }, { transform: "scaleX(0.95)" }], { duration: Math.min(ms, 1e7), easing: "ease-out", fill: "forwards" })
 }
 
-// Returns the second shortest of some times, of two the shorter: other work of the machine slows some pictures down.
+// Returns the second shortest time, or the shorter of two. Other work of the machine slows some pictures down.
 const usual = list => [...list].sort((a, b) => a - b)[Math.min(1, list.length - 1 >> 1)]
 
 // The cost of a picture: a fixed part, which has the script, the overlays and the page, and a part for each sample.
@@ -71,7 +71,7 @@ export class Cost {
   #isCold = true
 
   // Takes a picture that took `ms`, of which the engine needed `pixelMs` for its samples. isCold: it has little to reuse.
-  // Cold pictures count only until there is another.
+  // Cold pictures count only until a warm one is added.
   add({ ms, pixelMs, samples, isCold = false }) {
     if (isCold && !this.#isCold) return
     if (this.#isCold && !isCold) this.#fixed = this.#sample = []
@@ -97,9 +97,9 @@ function nudged(params, { set }, count) {
 }
 
 // Renders a job's pictures as the controls request them: one at a time, the newest request first. Each change is
-// answered by a picture of the best size for which there is time, with fewer rays to area lights and of rough surfaces if
-// there is none for all. A drag, a series of changes without a rest, keeps the size of the drag before it or changes it
-// once. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change ends them. Another
+// answered by a picture of the best size for which there is time. If there is no time for all rays, a sample sends at most
+// one or two of each kind. A drag, a series of changes without a rest, keeps the size of the drag before it, or changes it
+// once as a rule. At rest the picture gets its full size, in device pixels, and its samples, in steps; a change ends them. Another
 // job renders these pictures, so that the first one keeps what a drag can reuse.
 //   page      returns the size of the picture in the page, CSS pixels: { width, height }
 //   size      returns the picture's own size if it may differ: a page that is too narrow shows it smaller
@@ -155,7 +155,7 @@ export class Renderer {
     return scale > WHOLE ? 1 : scale
   }
 
-  // Returns the scale of a drag's first picture: that of the last picture, whose results can be reused, if it is about right.
+  // Returns the scale of a drag's first picture: the scale of the last picture, whose results can be reused, if it is about right.
   #firstScale(ratio) {
     const scale = this.#answerScale(), better = scale / this.scale
     return Math.max(better, 1 / better) < ratio ? this.scale : scale
@@ -216,8 +216,8 @@ export class Renderer {
     return all.length > 1 && all[0] > STUCK * time || isFull && (all[1] > LATE * time || all[RECENT - 2] < EARLY * time && scale < 1)
   }
 
-  // Renders pictures as of a drag, not shown: measures them, so that the first drag begins with the right size and number
-  // of rays, and can reuse rays of that size.
+  // Renders hidden pictures as in a drag, and measures them. The first drag then begins with the right size and number of
+  // rays, and can reuse rays of that size.
   async #prepare(request) {
     const abort = this.abort = new AbortController(), { params } = this.job
     let count = 0

@@ -97,7 +97,7 @@ static int widest_label(const glint_layout *layout)
     return widest;
 }
 
-/// Returns whether the labels of curves are inside the area of the curves: narrow pages have no space beside it.
+/// Returns whether the labels of curves are inside the area of the curves. Narrow pages have no space next to it.
 static bool has_legend(const glint_layout *layout) { return layout->overlays->enlarged > INSIDE; }
 
 /// Lays out a chart whose upper left corner is x, y. The numbers along y need space that shortens x, and so on; so y is
@@ -250,8 +250,8 @@ static void find_ends(chart *c)
     }
 }
 
-/// Stacks the labels of the curves at the top or the bottom of the area, where the fewest points of curves are. Returns the
-/// left end of the labels.
+/// Stacks the labels of the curves inside the area: at the top or bottom, and at the left, right or middle, where the
+/// labels hide the fewest points of curves. Returns the left end of the labels.
 static int find_legend(chart *c)
 {
     const glint_curve *curve;

@@ -46,7 +46,8 @@ typedef struct glint_lens_points {
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
     bool joined; ///< whether this is another sample of the same area light as the light before it
-    /// For the stage `light`, differs from the light before it only in position; both without samples or a cone
+    /// whether the stage `light` needs only another position than for the previous light. Neither light has samples or a
+    /// cone
     bool same_but_position;
     bool is_spot;
     glint_spot spot;
@@ -195,7 +196,7 @@ static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t 
     return plan->patterns ? plan->patterns->of[material].desc.diffuse : plan->materials[material].diffuse;
 }
 
-/// Returns how many of `samples` rays of a kind a sample of this frame sends.
+/// Returns the number of rays of one kind that a sample sends: `samples`, limited by the frame's `rays`.
 uint32_t glint_plan_rays(const glint_plan *plan, int64_t samples);
 
 /// Returns whether lights illuminate surfaces.

@@ -79,7 +79,7 @@ typedef struct glint_reuse {
     bool on;
     bool is_eager; ///< hits are cached in the first frame with their key
     size_t budget;
-    size_t pictures; ///< bytes of the budget that whole pictures use, see glint_reuse_reserve
+    size_t pictures; ///< bytes reserved by glint_reuse_reserve
     size_t used; ///< bytes of the budget that tiles use
     pthread_mutex_t lock; ///< protects `used` and the following fields while a frame's workers make blocks
     void *chunk; ///< owned: the current chunk, which begins with a pointer to the previous one
@@ -110,7 +110,8 @@ void glint_reuse_destroy(glint_reuse *reuse);
 /// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory, nothing is cached.
 void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count);
 
-/// Takes `bytes` of the budget for a cached whole picture. At most half of the budget goes to pictures.
+/// Reserves `bytes` of the budget for memory other than the tiles' results: the renderer's images, and the light of
+/// vertices and faces. Returns false if reuse is off, if too little is left, or if more than half would be reserved.
 bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes);
 void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
 

@@ -1,5 +1,5 @@
-// Camera rays, and hits: of coherent bundles of rays, from one eye and also through pixels at any position, and of
-// individual rays, which need not be coherent. One file, because both traversals call the same tests of primitives.
+// Makes camera rays, and finds hits in two ways: for coherent bundles from one eye (a tile's pixels, or pixels at any
+// position), and for rays that need not be coherent. One file, because both traversals call the same tests of primitives.
 #include "engine/render/adaptive/kernel_pixels.h"
 #include "engine/render/stages/cast/camera.h"
 #include "engine/render/stages/cast/cast.h"

@@ -76,7 +76,8 @@ INNER void R(light_vectors)(R(lit_call) * call, R(seen_slot) * slot, const bool 
     call->walk.any_back = call->walk.any_back || back;
 }
 
-/// Does the same for a material with or without highlights. Only the commonest call has a copy without highlights.
+/// Calls light_vectors with `glossy` as a constant. With `normals`, materials without highlights use the copy for
+/// highlights, too: another copy would only take longer to compile.
 INNER void R(light_whole)(R(lit_call) * call, R(seen_slot) * slot, const bool mixed, const bool normals,
                           const glint_prim_kind kind, R(group_cursor) cursor)
 {
