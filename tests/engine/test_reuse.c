@@ -803,11 +803,16 @@ static bool set_everywhere(world *w, const table *of, const field *f)
         for (size_t k = 0; group && k < glint_group_count(w->shapes[i]); k++)
             SET(shape, glint_group_child(w->shapes[i], k));
     }
-    if (of == &camera_table)
-        SET(camera, w->camera);
     if (of == &scene_table)
         SET(scene, w->scene);
 #undef SET
+    if (of == &camera_table) {
+        glint_camera_desc c = *glint_camera_get(w->camera);
+        c.struct_size = sizeof c;
+        set_other(f, &c);
+        keep_focus(&c);
+        taken = glint_camera_set(w->camera, &c, NULL) == GLINT_OK;
+    }
     if (!of)
         set_other(f, &w->render);
     return taken || !of;
@@ -838,12 +843,6 @@ static void each_field_alone(void **unused)
                 render_both(&w, both, NULL, frame);
             for (int edit = 0; edit < 2; edit++) {
                 taken += set_everywhere(&w, tables[t], &fields[i]);
-                if (tables[t] == &camera_table) {
-                    glint_camera_desc c = *glint_camera_get(w.camera);
-                    c.struct_size = sizeof c;
-                    keep_focus(&c);
-                    glint_camera_set(w.camera, &c, NULL);
-                }
                 render_both(&w, both, NULL, 3 + edit);
             }
             free_world(&w);
