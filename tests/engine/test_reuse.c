@@ -742,7 +742,7 @@ static void set_other(const field *f, void *desc)
         set_field(f, desc);
 }
 
-/// Makes a mirror, clear glass, a metal, rough glass and a translucent material, lamps that the eye sees, and, if
+/// Makes a mirror, clear glass, a metal, rough glass and a translucent material, visible lamps, indirect light and, if
 /// `open`, a background by a program.
 static void show_everything(world *w, bool open)
 {
@@ -774,6 +774,7 @@ static void show_everything(world *w, bool open)
     glint_scene_desc s = *glint_scene_get(w->scene);
     s.struct_size = sizeof s;
     s.background_program = open ? skies[0] : NULL;
+    s.has_indirect = true;
     assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
     w->render.width = 40;
     w->render.height = 24;
